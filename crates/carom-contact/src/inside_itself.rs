@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use carom_algebra::Vector;
 
-use crate::kinematics::Facets;
+use crate::kinematics::{Facets, Surface};
 use crate::places::Places;
 use crate::skin::{CHORDS, Skin};
 
@@ -38,7 +38,7 @@ impl Skin {
             let nodes = surface.facet(facet).nodes;
             // The last node is the first of another facet.
             for &node in nodes.iter().enumerate().filter(|(k, _)| *k != 1).map(|(_, node)| node) {
-                if self.seen_from(node, at) < 2.0 * PI + SHARPEST {
+                if surface.seen_from(node, at) < 2.0 * PI + SHARPEST {
                     continue;
                 }
                 let nearest = (0..surface.all())
@@ -57,14 +57,15 @@ impl Skin {
         }
         deepest
     }
+}
 
+impl Surface {
     /// Angle under which a node sees the facets of its own boundary that do not contain it.
-    fn seen_from(&self, node: usize, y: Places) -> f64 {
+    pub(crate) fn seen_from(&self, node: usize, y: Places) -> f64 {
         let from: Vector<2> = y.at(node);
-        let surface = self.surface();
         let mut angle = 0.0;
-        for facet in (0..surface.all()).filter(|&f| !surface.facet(f).nodes.contains(&node)) {
-            let place = |k: usize| surface.facet(facet).at(y, 2.0 * k as f64 / CHORDS as f64 - 1.0).position;
+        for facet in (0..self.all()).filter(|&facet| !self.facet(facet).nodes.contains(&node)) {
+            let place = |k: usize| self.facet(facet).at(y, 2.0 * k as f64 / CHORDS as f64 - 1.0).position;
             let mut start = place(0) - from;
             for k in 1..=CHORDS {
                 let end = place(k) - from;
@@ -81,7 +82,6 @@ mod tests {
     use carom_solid::FacetShape;
 
     use super::*;
-    use crate::kinematics::Surface;
 
     #[test]
     fn an_arm_pushed_through_the_side_of_its_own_body_is_found_with_its_depth() {

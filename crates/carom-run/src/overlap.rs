@@ -3,8 +3,9 @@
 //! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run.
 //!
 //! `overlap = "relax"` finds the equilibrium in which the gaps are closed: an interference fit. The
-//! depths that the nodes keep are reduced to zero in stages, and each stage is solved by steps of
-//! the proximal point method in the metric of the mass matrix,
+//! depths that the nodes keep are reduced in stages to zero, or to the deviation of straight cells
+//! from the curved sides that they stand for, and each stage is solved by steps of the proximal
+//! point method in the metric of the mass matrix,
 //!
 //! ```text
 //! y_k+1 = argmin U(y) + |y − y_k|²_M / 2τ²   with   g(y) + (1 − s) depth ≥ 0,
@@ -12,9 +13,10 @@
 //!
 //! which are steps of backward Euler from rest. With τ much longer than the longest period of the
 //! bodies a step is nearly static; bodies that supports leave free keep their centre of mass, and
-//! need no other regularisation. Loads and gravity do not act. The run starts from the positions
-//! found, with the velocities of the case, and the energy that the bodies then store is in its
-//! first row.
+//! need no other regularisation. They find the same minimum for every τ, which grows where the
+//! energy settles slowly: where bodies that nothing holds turn relative to each other. Loads and
+//! gravity do not act. The run starts from the positions found, with the velocities of the case,
+//! and the energy that the bodies then store is in its first row.
 
 use carom_case::{
     BodySpec, Case, ContactLaw, FormulaSpec, FrictionSpec, Law, MassKind, ObstacleMotion, Overlap,
@@ -31,13 +33,18 @@ use crate::quantity::quantity;
 
 /// Stages in which the depths are reduced.
 const STAGES: u32 = 8;
-/// τ as a multiple of the time in which a wave crosses the largest body.
+/// First τ as a multiple of the time in which a wave crosses the largest body.
 const LONG: f64 = 100.0;
-/// Relative change of the strain energy in a step with which the equilibrium is reached, and most
-/// steps to it. Positions would not do: bodies that may turn freely turn a little in every step,
-/// since the energy hardly depends on how facets of different lengths lie on each other.
+/// Relative change of the strain energy in a step with which the equilibrium is reached. Positions
+/// would not do: bodies that may turn freely turn a little in every step, since the energy hardly
+/// depends on how facets of different lengths lie on each other.
 const SETTLED: f64 = 1e-10;
-const MOST: u32 = 200;
+/// Most steps with one τ.
+const MOST: u32 = 20;
+/// Growth of τ where they were not enough, and number of its values. With the last one, inertia is
+/// about 1e-10 of the stiffness of a body, well above round-off.
+const LONGER: f64 = 10.0;
+const ROUNDS: u32 = 4;
 /// Gap, relative to L, at which a pair is closed.
 const CLOSED: f64 = 1e-9;
 /// Stretch of a body of small strain by its rotation, over the overlap, that is allowed.
@@ -68,7 +75,10 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     for (k, depths) in depths(model, y).iter().enumerate() {
         let contact = &model.contacts[k];
         let first = nodes.len();
-        for (&node, &depth) in contact.kinematics.secondary().iter().zip(depths) {
+        let keeps = case.contacts[k].overlap == Overlap::KeepGap;
+        for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
+            let kept = if keeps { contact.kinematics.kept(place) } else { 0.0 };
+            let depth = depths[place] + kept;
             if depth > CLOSED * model.scale {
                 let body = owner(&model.parts, node);
                 nodes.push(OverlapNode {
@@ -86,21 +96,34 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     nodes
 }
 
-/// Gives the contacts of a model the initial depths that they keep.
+/// Gives the contacts of a model the initial depths that they keep: the overlap of the bodies, or
+/// the deviation of straight cells from the curved sides whose overlap is closed.
 pub(crate) fn keep(case: &Case, model: &mut Model) {
-    if case.contacts.iter().any(|contact| contact.overlap == Overlap::KeepGap) {
-        apply(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
+    for (contact, spec) in model.contacts.iter_mut().zip(&case.contacts) {
+        if spec.overlap == Overlap::Relax {
+            let heights = contact.kinematics.roundings(&model.initial_position);
+            let is_round = heights.iter().any(|height| height.abs() > CLOSED * model.scale);
+            if is_round {
+                contact.kinematics.keep(&heights.iter().map(|height| -height).collect::<Vec<_>>());
+            }
+        }
     }
+    add(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
 }
 
-/// Gives every contact a share of its initial depths.
-fn apply(case: &Case, model: &mut Model, share: impl Fn(Overlap) -> f64) {
+/// Adds to the depths that the contacts keep a share of their initial overlap.
+fn add(case: &Case, model: &mut Model, share: impl Fn(Overlap) -> f64) {
+    if case.contacts.iter().all(|contact| share(contact.overlap) == 0.0) {
+        return;
+    }
     let initial = depths(model, &model.initial_position);
     for ((contact, spec), depths) in model.contacts.iter_mut().zip(&case.contacts).zip(&initial) {
         let share = share(spec.overlap);
         if share > 0.0 {
-            let kept: Vec<f64> = depths.iter().map(|depth| share * depth).collect();
-            contact.kinematics.keep(&kept);
+            let kinematics = &mut contact.kinematics;
+            let kept = |(node, depth): (usize, &f64)| kinematics.kept(node) + share * depth;
+            let kept: Vec<f64> = depths.iter().enumerate().map(kept).collect();
+            kinematics.keep(&kept);
         }
     }
 }
@@ -127,15 +150,12 @@ pub(crate) fn relaxed(
     let quasi = quasi_static(case);
     let at = |share: f64| -> Result<Model, Vec<Problem>> {
         let mut model = build(&quasi, materials)?;
-        apply(&quasi, &mut model, |overlap| match overlap {
-            Overlap::Relax => share,
-            Overlap::KeepGap => 1.0,
-            Overlap::Refuse => 0.0,
-        });
+        keep(&quasi, &mut model);
+        add(&quasi, &mut model, |overlap| if overlap == Overlap::Relax { share } else { 0.0 });
         Ok(model)
     };
     let start = at(1.0)?;
-    let inside = overlaps(&quasi, &start);
+    let inside = overlaps(&quasi, &start, |_| true);
     if let Some(problem) = inside.first() {
         return Err(fails(format!("{}; {}", problem.what, problem.why)));
     }
@@ -144,17 +164,31 @@ pub(crate) fn relaxed(
     if !slowest.is_finite() {
         return Err(fails("no body has a mass".to_owned()));
     }
-    let step = LONG * start.scale / slowest;
     let rest = vec![0.0; start.dofs()];
-    let mut before =
-        InitialState { y: start.initial_position.clone(), v: rest.clone(), pairs: closed(&start) };
-    for stage in 1..=STAGES {
+    let mut before = InitialState { y: start.initial_position.clone(), v: rest, pairs: closed(&start) };
+    let mut proximal = Proximal {
+        step: LONG * start.scale / slowest,
+        tolerance: case.newton.tolerance,
+        floor: floor(case, &start),
+        threads,
+    };
+    for stage in 1..STAGES {
         let model = at(1.0 - f64::from(stage) / f64::from(STAGES))?;
-        let most = if stage == STAGES { MOST } else { 1 };
-        before = settle(model, before, step, most, (case.newton.tolerance, floor(case, &start)), threads)
-            .map_err(&fails)?;
+        before = proximal.steps(model, before, 1).map_err(&fails)?.end;
     }
-    if let Some(why) = swells(case, &start, &before.y) {
+    for round in 1..=ROUNDS {
+        let found = proximal.steps(at(0.0)?, before, MOST).map_err(&fails)?;
+        before = found.end;
+        let Some([old, strain]) = found.changes else { break };
+        if round == ROUNDS {
+            let steps = ROUNDS * MOST;
+            return Err(fails(format!(
+                "the strain energy still changes from {old:.6e} [energy] to {strain:.6e} [energy] after {steps} steps"
+            )));
+        }
+        proximal.step *= LONGER;
+    }
+    if let Some(why) = swells(case, model, &before.y) {
         let what = format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[first].name);
         let help = "use law = \"saint-venant-kirchhoff\" with the same constants, or a support that prevents the rotation";
         return Err(vec![Problem::new(format!("contact[{first}].overlap"), what, why, help)]);
@@ -175,12 +209,12 @@ pub(crate) fn floor(case: &Case, model: &Model) -> f64 {
 /// Why the equilibrium is none, if a body has turned whose strain is that of small displacements:
 /// turned by ω, it is longer by √(1 + ω²) across the axis at no energy, and an overlap vanishes
 /// without pressure.
-fn swells(case: &Case, start: &Model, y: &[f64]) -> Option<String> {
-    let deepest = depths(start, &start.initial_position).concat().into_iter().fold(0.0, f64::max);
+fn swells(case: &Case, model: &Model, y: &[f64]) -> Option<String> {
+    let deepest = depths(model, &model.initial_position).concat().into_iter().fold(0.0, f64::max);
     let is_small = |spec: &&BodySpec| case.materials_of(spec).iter().any(|m| m.law == Law::LinearElastic);
     case.bodies.iter().filter(is_small).find_map(|spec| {
-        let part = start.parts.iter().find(|part| part.name == spec.name)?;
-        let turn = rotation(start.dimension, part.of(&start.reference), part.of(y));
+        let part = model.parts.iter().find(|part| part.name == spec.name)?;
+        let turn = rotation(model.dimension, part.of(&model.reference), part.of(y));
         let stretch = ((1.0 + turn * turn).sqrt() - 1.0) * part.body.mesh().diameter();
         (stretch > SWELLS * deepest).then(|| {
             format!(
@@ -217,35 +251,45 @@ fn rotation(d: usize, reference: &[f64], y: &[f64]) -> f64 {
     sum.sqrt()
 }
 
-/// Steps from rest until nothing moves, or after so many steps, if more than one is allowed.
-fn settle(
-    model: Model,
-    mut before: InitialState,
+/// Steps of the proximal point method.
+struct Proximal {
+    /// τ.
     step: f64,
-    most: u32,
-    (tolerance, floor): (f64, f64),
+    /// Tolerance of Newton's method.
+    tolerance: f64,
+    /// Energy that counts as none.
+    floor: f64,
     threads: usize,
-) -> Result<InitialState, String> {
-    let rest = before.v.clone();
-    let grid = Grid { dt: step, steps: u64::from(most), phase: 0.0, guard: None, floor: 0.0 };
-    let mut simulation = Simulation::new(model, stepper(tolerance)?, grid, true, Some(before), threads)
-        .map_err(|rejected| rejected.to_string())?;
-    loop {
-        let old = simulation.state().ledger.strain;
-        simulation.step().map_err(|stopped| stopped.to_string())?;
-        let mut state = simulation.state().clone();
-        let strain = state.ledger.strain;
-        if most == 1 || (strain - old).abs() <= SETTLED * strain.abs() + floor {
-            before = InitialState { y: state.y, v: rest, pairs: state.pairs };
-            return Ok(before);
+}
+
+/// The positions that proximal steps have reached.
+struct Reached {
+    end: InitialState,
+    /// The last two strain energies, if they still change.
+    changes: Option<[f64; 2]>,
+}
+
+impl Proximal {
+    /// Steps from rest until the strain energy has settled, at most so many.
+    fn steps(&self, model: Model, before: InitialState, most: u32) -> Result<Reached, String> {
+        let rest = before.v.clone();
+        let grid = Grid { dt: self.step, steps: u64::from(most), phase: 0.0, guard: None, floor: 0.0 };
+        let stepper = stepper(self.tolerance)?;
+        let mut simulation = Simulation::new(model, stepper, grid, true, Some(before), self.threads)
+            .map_err(|rejected| rejected.to_string())?;
+        loop {
+            let old = simulation.state().ledger.strain;
+            simulation.step().map_err(|stopped| stopped.to_string())?;
+            let mut state = simulation.state().clone();
+            let strain = state.ledger.strain;
+            let changes = (strain - old).abs() > SETTLED * strain.abs() + self.floor;
+            if !changes || simulation.finished() {
+                let end = InitialState { y: state.y, v: rest, pairs: state.pairs };
+                return Ok(Reached { end, changes: changes.then_some([old, strain]) });
+            }
+            (state.v, state.a) = (rest.clone(), rest.clone());
+            simulation.restore(state).map_err(|other| other.to_string())?;
         }
-        if simulation.finished() {
-            return Err(format!(
-                "the strain energy still changes from {old:.6e} [energy] to {strain:.6e} [energy] after {most} steps"
-            ));
-        }
-        (state.v, state.a) = (rest.clone(), rest.clone());
-        simulation.restore(state).map_err(|other| other.to_string())?;
     }
 }
 
@@ -306,7 +350,7 @@ fn closed(model: &Model) -> Vec<Vec<carom_contact::Pair>> {
         for pair in &mut pairing.pairs {
             rows.clear();
             let strict =
-                contact.kinematics.kept(pair.node) > 0.0 && contact.kinematics.allowed(pair.node) == 0.0;
+                contact.kinematics.kept(pair.node) != 0.0 && contact.kinematics.allowed(pair.node) == 0.0;
             let found = contact.kinematics.measure(pair, y, &mut rows).is_ok();
             pair.active = strict && found && rows.row(0).gap.abs() <= CLOSED * model.scale;
         }

@@ -1,7 +1,9 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
 use carom_algebra::LinearError;
-use carom_case::{Case, ContactLaw, ContactPoint, ContactSpec, Fallback, Problem, Problems, TangentRule};
+use carom_case::{
+    Case, ContactLaw, ContactPoint, ContactSpec, Fallback, Overlap, Problem, Problems, TangentRule,
+};
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, stable_step};
 use carom_mechanics::{
@@ -120,7 +122,8 @@ impl<'a> Setup<'a> {
         if let Some(rejected) = inverted(case, &model).filter(|_| !placed) {
             return Err(vec![no_start(case, placed, &rejected)].into());
         }
-        let overlaps = if placed { Vec::new() } else { overlaps(case, &model) };
+        let overlaps =
+            if placed { Vec::new() } else { overlaps(case, &model, |overlap| overlap != Overlap::Relax) };
         let problems = [overlaps, too_long(case, &model)].concat();
         if !problems.is_empty() {
             return Err(problems.into());

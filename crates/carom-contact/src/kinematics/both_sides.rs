@@ -147,6 +147,10 @@ impl<K: OneWay> Kinematics for BothSides<K> {
         direction.kept(node)
     }
 
+    fn roundings(&self, y: &[f64]) -> Vec<f64> {
+        [self.forward.roundings(y), self.reverse.roundings(y)].concat()
+    }
+
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
         self.direction(pair.node).0.nodes_of(pair.facet)
     }

@@ -15,6 +15,9 @@
 //! or have a node in common with one that does on the same smooth part, are excluded by this or as
 //! its own.
 //!
+//! A slit that is closed turns by −180° at its tip, and a sharp corner by nearly +180°. Which of both
+//! a joint is follows from the angle of the body at its node in the reference configuration.
+//!
 //! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
 //! without a common cell always can.
 //!
@@ -32,16 +35,19 @@ use crate::places::Places;
 
 /// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet.
 const WINDOW: f64 = 80.0 * PI / 180.0;
-/// Left turn of a joint above which it is a closed slit: a body has no corner as sharp as 10°.
-const SHARPEST: f64 = 170.0 * PI / 180.0;
 
-/// The order of the facets of a body along the loops of its boundary.
+/// Cosine of the turn, 120°, from which on a joint may be the tip of a closed slit.
+const TIP: f64 = -0.5;
+
+/// The order of the facets of a body along the loops of its boundary, and its corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Folds {
     /// All facets in the order of traversal, loop by loop.
     order: Vec<usize>,
     /// Place of each facet in the order of traversal.
     place: Vec<usize>,
+    /// Turn of the tangent at the joint after each facet in the reference configuration.
+    joints: Vec<f64>,
     /// First place of each loop in the order of traversal, and the end of the last loop.
     starts: Vec<usize>,
     /// Number of the loop to which each facet belongs.
@@ -101,8 +107,10 @@ impl Folds {
                 starts.push(order.len());
             }
         }
+        let joints: Vec<f64> =
+            (0..count).map(|facet| joint(surface, facet, Places::new(reference, 2))).collect();
         let mut turns = Turns::default();
-        turns.update_loops(&order, &starts, surface, Places::new(reference, 2));
+        turns.update_loops(&order, &starts, &joints, surface, Places::new(reference, 2));
         for (run, ends) in starts.windows(2).enumerate() {
             order[ends[0]..ends[1]].rotate_left(turns.best_start(run, ends[0]..ends[1]));
         }
@@ -122,7 +130,7 @@ impl Folds {
                 }
             }
         }
-        Self { order, place, starts, of, pieces, first, around }
+        Self { order, place, joints, starts, of, pieces, first, around }
     }
 
     /// Places, in the order of traversal, of the facets before and after a node; both are equal for
@@ -184,13 +192,35 @@ impl Folds {
     }
 }
 
+/// The representative of an angle, up to multiples of a whole turn, that is nearest to another one.
+fn nearest_to(other: f64, angle: f64) -> f64 {
+    angle + 2.0 * PI * ((other - angle) / (2.0 * PI)).round()
+}
+
+/// Turn of the tangent at the joint after a facet: π less the angle of the body there. A closed slit
+/// and a sharp corner differ in it by a whole turn, and in what a node sees of its boundary.
+fn joint(surface: &Surface, facet: usize, y: Places) -> f64 {
+    let Some(next) = surface.neighbour(facet, true) else { return 0.0 };
+    let kink = surface.kink(facet, next, y);
+    let turn = kink.sine.atan2(kink.cosine);
+    let turns_back = kink.cosine < TIP && surface.is_whole();
+    if turns_back { nearest_to(PI - surface.seen_from(surface.facet(next).nodes[0], y), turn) } else { turn }
+}
+
 impl Turns {
     /// Recomputes the turns of the tangent at the positions `y`.
     pub(crate) fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
-        self.update_loops(&folds.order, &folds.starts, surface, y);
+        self.update_loops(&folds.order, &folds.starts, &folds.joints, surface, y);
     }
 
-    fn update_loops(&mut self, order: &[usize], starts: &[usize], surface: &Surface, y: Places) {
+    fn update_loops(
+        &mut self,
+        order: &[usize],
+        starts: &[usize],
+        joints: &[f64],
+        surface: &Surface,
+        y: Places,
+    ) {
         self.start.clear();
         self.within.clear();
         self.total.clear();
@@ -205,8 +235,7 @@ impl Turns {
                 self.within.push(within);
                 turn += within;
                 let kink = surface.kink(facet, facets[(k + 1) % facets.len()], y);
-                let joint = kink.sine.atan2(kink.cosine);
-                turn += if joint > SHARPEST { joint - 2.0 * PI } else { joint };
+                turn += nearest_to(joints[facet], kink.sine.atan2(kink.cosine));
             }
             self.total.push(turn);
         }
@@ -294,6 +323,11 @@ mod tests {
 
     #[test]
     fn a_convex_body_meets_itself_nowhere() {
+        // Wedges of 10° and less, with nodes on their flanks.
+        for half in [0.0875, 0.03, 1e-3, 1e-6] {
+            let wedge = [[0.0, 0.0], [1.0, -half], [2.0, -2.0 * half], [2.0, 2.0 * half], [1.0, half]];
+            assert!((0..5).all(|node| (0..5).all(|facet| !face(&wedge, node, facet))), "{half}");
+        }
         let disc: Vec<[f64; 2]> =
             (0..12).map(|k| f64::from(k) * PI / 6.0).map(|a| [a.cos(), a.sin()]).collect();
         assert!((0..12).all(|node| (0..12).all(|facet| !face(&disc, node, facet))));

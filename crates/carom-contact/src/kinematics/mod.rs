@@ -22,6 +22,7 @@ mod opposed;
 mod passed;
 mod projection;
 mod recent;
+mod rounding;
 mod space;
 mod surface;
 mod swept;
@@ -68,7 +69,7 @@ pub trait Kinematics: Send + Sync {
     }
 
     /// Adds to the gap of every secondary node, by index, an initial depth: an overlap that is
-    /// kept, or not yet closed.
+    /// kept, or not yet closed, or the deviation of straight facets from a curved side.
     fn keep(&mut self, depths: &[f64]);
 
     /// Initial depth that is kept as an overlap of a secondary node, given by index.
@@ -80,6 +81,13 @@ pub trait Kinematics: Send + Sync {
     /// Whether the contact point of a pair lies on its facet, not on its extension.
     fn is_on_facet(&self, pair: &Pair) -> bool {
         pair.xi.abs() <= 1.0
+    }
+
+    /// For every secondary node, by index, the height over the facet that it faces of the smooth
+    /// surface that straight facets stand for, at positions `y`; empty if facets are no such
+    /// chords.
+    fn roundings(&self, _y: &[f64]) -> Vec<f64> {
+        Vec::new()
     }
 
     /// Number of facets with which a secondary node, given by index, can form pairs.

@@ -22,6 +22,7 @@ use super::hand_over::{Held, Next, Sliding};
 use super::joint::{AT_JOINT, OnFacets};
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
+use super::rounding::rounding;
 use super::surface::{Search, Surface, path};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
@@ -166,6 +167,17 @@ impl NodeToFacet {
         self.allowed(place) + self.kept(place)
     }
 
+    /// The point of the primary side nearest to a secondary node that faces it, and the gap there.
+    fn faced(&self, node: usize, y: Places) -> Option<(OnFacet<f64>, f64)> {
+        let node = self.secondary[node];
+        (0..self.primary.facets())
+            .filter_map(|facet| {
+                let xi = self.primary.facet(facet).closest_point(y, y.at(node), 1.0 + 1e-9)?;
+                Some((OnFacet { facet, xi }, self.gap(node, facet, xi, y)))
+            })
+            .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+    }
+
     fn is_frozen(&self) -> bool {
         self.point == ContactPoint::Frozen
     }
@@ -284,16 +296,19 @@ impl Kinematics for NodeToFacet {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let kept = self.kept(node);
-        let node = self.secondary[node];
-        let y = self.places(y);
-        (0..self.primary.facets())
-            .filter_map(|f| {
-                let xi = self.primary.facet(f).closest_point(y, y.at(node), 1.0 + 1e-9)?;
-                Some(self.gap(node, f, xi, y))
-            })
-            .min_by(|a, b| a.abs().total_cmp(&b.abs()))
-            .map(|gap| gap + kept)
+        let (_, gap) = self.faced(node, self.places(y))?;
+        Some(gap + self.kept(node))
+    }
+
+    fn roundings(&self, y: &[f64]) -> Vec<f64> {
+        if self.folds.is_some() || self.primary.shape().degree() != 1 {
+            return Vec::new();
+        }
+        let rounding = |node: usize| {
+            let (OnFacet { facet, xi }, _) = self.faced(node, self.places(y))?;
+            Some(rounding(&self.primary, facet, [xi, 0.0], y))
+        };
+        (0..self.secondary.len()).map(|node| rounding(node).unwrap_or(0.0)).collect()
     }
 
     fn keep(&mut self, depths: &[f64]) {
@@ -381,7 +396,7 @@ impl Kinematics for NodeToFacet {
         let paths = Paths {
             boundary: &self.primary,
             nodes: &self.secondary,
-            allowed: &|place| self.slack(place),
+            allowed: &|place| self.slack(place).max(0.0),
             enters: &|node, facet| !self.excludes(node, facet),
             bounds: &bounds,
             bounce,

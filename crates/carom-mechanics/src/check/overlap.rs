@@ -10,7 +10,8 @@ use crate::model::Model;
 /// Distance outside of a body, relative to L, at which a node still counts as on its boundary.
 const ON: f64 = 1e-9;
 
-/// Depths at positions `y`, ≥ 0: for each contact one per node of its kinematics.
+/// Depths at positions `y`, ≥ 0, beyond those that the contacts keep: for each contact one per node
+/// of its kinematics.
 pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
     let mut skins: Vec<Option<BodySkin>> = model.parts.iter().map(|_| None).collect();
     let mut all = Vec::new();
@@ -18,7 +19,7 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
         let first = contact.facets.first().and_then(|(_, facets)| part_of(model, *facets.first()?.first()?));
         let mut depth = |(place, &node): (usize, &usize)| -> f64 {
             let kept = contact.kinematics.kept(place);
-            let below = contact.kinematics.signed_distance(place, y).map(|gap| kept - gap);
+            let below = contact.kinematics.signed_distance(place, y).map(|gap| -gap);
             if has_gaps(model, contact) || below.is_some_and(|below| below <= 0.0) {
                 return below.unwrap_or(0.0).max(0.0);
             }
@@ -31,8 +32,10 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
             let at = position(y, model.dimension, node);
             let found = skins[other].as_ref().and_then(|skin| skin.depth(at, None, y));
             let distance = found.map_or(f64::INFINITY, |found| found.distance);
+            // In front of chords of a convex side, a node may be inside it.
+            let is_inside = distance <= ON * model.scale + (-kept).max(0.0);
             // Behind a joint of a hollow side no facet is faced.
-            if distance <= ON * model.scale { below.unwrap_or(-distance).max(0.0) } else { 0.0 }
+            if is_inside { below.unwrap_or(-distance - kept).max(0.0) } else { 0.0 }
         };
         all.push(contact.kinematics.secondary().iter().enumerate().map(&mut depth).collect());
     }

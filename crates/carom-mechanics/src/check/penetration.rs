@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
 use crate::check::tips::{Pierced, Tip};
-use crate::check::watched::{Way, edge_points, has_gaps, watched};
+use crate::check::watched::{Way, edge_points, has_gaps, keeps, watched};
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -357,7 +357,13 @@ impl Penetration {
     /// for `Penetration::check`.
     pub fn inside(&mut self, model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
         self.begin(model, y);
-        self.ways.iter_mut().flat_map(|way| &mut way.nodes).for_each(|watched| watched.share = 0.0);
+        for way in &mut self.ways {
+            // Where nodes keep depths, points between those of an edge deviate by as much as facets do
+            // from what they stand for: they are judged as in every step.
+            let keeps = way.contact.is_some_and(|contact| keeps(&model.contacts[contact]));
+            let exact = way.nodes.iter_mut().filter(|watched| !keeps || watched.between.is_empty());
+            exact.for_each(|watched| watched.share = 0.0);
+        }
         let mut found: Vec<(usize, usize, f64)> = Vec::new();
         for k in 0..self.ways.len() {
             let (_, deepest) = self.deepest(model, k, None);

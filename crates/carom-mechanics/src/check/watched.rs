@@ -8,6 +8,10 @@ use carom_contact::{Boundary, Side};
 use crate::check::skins::{kinks, length, part_of, position, skin_facets, skin_nodes};
 use crate::model::{Contact, Model};
 
+/// Difference between a depth and that from the extension of a facet past a joint of up to 30°,
+/// 1 − cos 30°.
+const BESIDE: f64 = 0.13;
+
 /// Nodes of a side against a body.
 #[derive(Debug)]
 pub(crate) struct Way {
@@ -110,8 +114,12 @@ impl Watched {
 
     /// Allowed depth in a facet of this length: a node that the contact law keeps outside is judged
     /// by the facet that it enters alone.
+    ///
+    /// A depth that is kept is that of nodes over a facet or its extension past a joint, not of the
+    /// points between them nor from the joint.
     pub(crate) fn limit(&self, entered: f64) -> f64 {
-        self.share * if self.constrained { entered } else { self.length.max(entered) }
+        let length = if self.constrained { entered } else { self.length.max(entered) };
+        self.share * length + BESIDE * self.kept.abs()
     }
 }
 
@@ -136,6 +144,11 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
 pub(crate) fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
     let nodes = contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
     nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
+}
+
+/// Whether a node of a contact keeps a depth.
+pub(crate) fn keeps(contact: &Contact) -> bool {
+    (0..contact.kinematics.nodes()).any(|node| contact.kinematics.kept(node) != 0.0)
 }
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.

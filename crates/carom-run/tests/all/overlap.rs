@@ -5,6 +5,7 @@ use carom_run::Setup;
 use crate::common::{case, finish, simulation};
 
 const BARS: &str = include_str!("../../../../cases/overlap/bars.toml");
+const PRESS: &str = include_str!("../../../../cases/overlap/press-t3.toml");
 const KEPT: &str = include_str!("../../../../cases/overlap/kept.toml");
 
 /// δ/(L₁/E₁ + L₂/E₂).
@@ -73,6 +74,22 @@ fn an_overlap_is_refused_by_default() {
     let refused = Setup::new(&case(BARS, &["contact.fit.overlap=refuse"])).start();
     let problems = refused.err().unwrap();
     assert!(problems[0].what.contains("overlap at the start by 0.001 m"), "{problems:?}");
+}
+
+/// What is due to chords is named, and closed by `relax` whatever scheme follows.
+#[test]
+fn chords_of_an_arc_are_told_from_an_interference() {
+    let refused = Setup::new(&case(PRESS, &["contact.fit.overlap=refuse"])).start();
+    let text = refused.err().unwrap().to_string();
+    assert!(text.contains("of it behind straight cells") && text.contains("use curved cells"), "{text}");
+    // Lamé's energy π a δ p; the meshes are softer, and smaller than the circles.
+    let exact = std::f64::consts::PI * 0.5 * 6.66667e-4 * 1e8;
+    for sides in [["shaft.arc", "hub.inner"], ["hub.inner", "shaft.arc"]] {
+        let sets =
+            [format!("contact.fit.secondary={}", sides[0]), format!("contact.fit.primary={}", sides[1])];
+        let strain = simulation(PRESS, &sets).state().ledger.strain;
+        assert!((strain / exact - 1.0).abs() < 0.08, "{sides:?}: {strain:e} {exact:e}");
+    }
 }
 
 /// Of a ring on a rigid core a little larger than its hole. Of linear elasticity, it can turn and

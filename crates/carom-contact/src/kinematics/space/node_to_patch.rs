@@ -30,6 +30,7 @@ use crate::kinematics::hand_over::{Held, Next, Sliding};
 use crate::kinematics::joint::{AT_JOINT, OnFacets};
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
+use crate::kinematics::rounding::rounding;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Facets, Kinematics, OnFacet, OneWay, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
@@ -166,6 +167,17 @@ impl NodeToPatch {
     pub(super) fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {
         let at = self.primary.patch(facet).seen_from(from, y, xi);
         -at.position.dot(&at.normal)
+    }
+
+    /// The point of the primary side nearest to a secondary node that faces it, and the gap there.
+    fn faced(&self, node: usize, y: &[f64]) -> Option<(OnFacet<[f64; 2]>, f64)> {
+        let from = place(y, self.secondary[node]);
+        (0..self.primary.facets())
+            .filter_map(|facet| {
+                let xi = self.primary.patch(facet).closest_point(y, from, PAST)?;
+                Some((OnFacet { facet, xi }, self.gap(facet, xi, from, y)))
+            })
+            .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
     fn closest(&self, pair: &Pair, y: &[f64]) -> Option<[f64; 2]> {
@@ -377,13 +389,19 @@ impl Kinematics for NodeToPatch {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        let from = place(y, self.secondary[node]);
-        let gap = |facet: usize| {
-            let xi = self.primary.patch(facet).closest_point(y, from, PAST)?;
-            Some(self.gap(facet, xi, from, y))
+        let (_, gap) = self.faced(node, y)?;
+        Some(gap + self.kept(node))
+    }
+
+    fn roundings(&self, y: &[f64]) -> Vec<f64> {
+        if self.folds.is_some() || self.primary.shape().degree() != 1 {
+            return Vec::new();
+        }
+        let rounding = |node: usize| {
+            let (OnFacet { facet, xi }, _) = self.faced(node, y)?;
+            Some(rounding(&self.primary, facet, xi, y))
         };
-        let nearest = (0..self.primary.facets()).filter_map(gap);
-        nearest.min_by(|a, b| a.abs().total_cmp(&b.abs())).map(|gap| gap + self.kept(node))
+        (0..self.secondary.len()).map(|node| rounding(node).unwrap_or(0.0)).collect()
     }
 
     fn search(

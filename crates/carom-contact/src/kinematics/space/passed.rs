@@ -22,7 +22,7 @@ impl NodeToPatch {
         let among = Paths {
             boundary: &self.primary,
             nodes: self.secondary(),
-            allowed: &|place| self.slack(place),
+            allowed: &|place| self.slack(place).max(0.0),
             enters: &|node, facet| !self.excludes(node, facet),
             bounds: &|node, facet| folds.is_none_or(|(folds, _)| folds.is_of_another_piece(node, facet)),
             bounce,

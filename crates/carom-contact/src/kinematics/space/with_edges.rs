@@ -54,6 +54,10 @@ impl Kinematics for WithEdges {
         if node < self.nodes() { self.nodes.kept(node) } else { 0.0 }
     }
 
+    fn roundings(&self, y: &[f64]) -> Vec<f64> {
+        self.nodes.roundings(y)
+    }
+
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
         match self.of_edges(pair) {
             Some(pair) => self.edges.nodes_of(&pair),
