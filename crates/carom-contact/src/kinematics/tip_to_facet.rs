@@ -45,8 +45,14 @@ const FOLLOWS: f64 = 0.5;
 
 impl Tip {
     /// Whether the part can lie between the nodes of a facet of this length.
-    pub fn is_narrow(&self, length: f64) -> bool {
+    fn is_narrow(&self, length: f64) -> bool {
         self.size < WIDE * length
+    }
+
+    /// Depth to which nodes alone hold the part outside of a facet of this length; zero if they do
+    /// not hold it.
+    pub fn permitted(&self, length: f64) -> f64 {
+        if self.is_narrow(length) { 0.0 } else { length / (8.0 * WIDE) }
     }
 }
 

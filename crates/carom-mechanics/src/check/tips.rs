@@ -3,9 +3,9 @@
 //!
 //! A centre at a distance d from the boundary of a body, negative inside, with the radius r lies
 //! r − d deep. Nothing is measured before the two can have met. Where the contact holds the parts
-//! (`tip_to_facet.rs` of `carom-contact`), the depth counts as penetration if the part is narrow or
-//! in contact. The depth of a wide one counts from a fiftieth of a facet on, the depth that is allowed
-//! to smooth nodes of a primary: where nodes lie on a circle, the chords between them are inside.
+//! (`tip_to_facet.rs` of `carom-contact`), the depth counts as penetration if the part is in contact
+//! or deeper than nodes alone permit: where they lie on a wide circle, the chords between them are
+//! inside.
 
 use std::sync::Arc;
 
@@ -16,8 +16,6 @@ use crate::model::Model;
 /// Allowed depth, over the length of a facet, of parts that the contact does not hold: chords of
 /// facets that lie on a circle are inside it.
 const SHARE: f64 = 0.25;
-/// Depth of wide parts, over the length of a facet, from which on it counts as penetration.
-const CHORDS: f64 = 0.02;
 
 /// A round part of the obstacle of a contact.
 #[derive(Debug)]
@@ -105,8 +103,7 @@ impl Tip {
         let place = contact.kinematics.nodes() + self.number;
         let is_held = place < contact.kinematics.secondary().len();
         let length = length(model, facet);
-        let counts = if tip.is_narrow(length) { 0.0 } else { CHORDS * length };
-        let counts = if is_held { counts } else { f64::INFINITY };
+        let counts = if is_held { tip.permitted(length) } else { f64::INFINITY };
         let limit = SHARE.max(contact.depths.others) * length;
         Some(Pierced { node: facet[0], place, depth, counts, limit })
     }
