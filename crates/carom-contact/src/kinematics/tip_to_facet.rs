@@ -31,7 +31,7 @@ use super::one_way::OneWay;
 use super::passed::Passed;
 use super::surface::Surface;
 use super::{Facets, Kinematics};
-use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
@@ -69,6 +69,8 @@ pub struct TipToFacet {
     side: Surface,
     /// The centres as nodes against the facets.
     centers: NodeToFacet,
+    /// Whether a part is left to a node that it meets.
+    leaves: bool,
 }
 
 impl TipToFacet {
@@ -88,7 +90,14 @@ impl TipToFacet {
         let numbers = (nodes..nodes + tips.len()).collect();
         let centers = NodeToFacet::new(numbers, side.clone(), Detection::ClosestPoint)
             .with_radii(tips.iter().map(|tip| tip.radius).collect());
-        Self { tips, carrier: obstacle.carrier.clone(), nodes, names, side, centers }
+        Self { tips, carrier: obstacle.carrier.clone(), nodes, names, side, centers, leaves: true }
+    }
+
+    /// Contact by springs, whose rows may depend on each other: no part is left to a node, after
+    /// which its spring would begin with a depth.
+    #[must_use]
+    pub fn with_springs(self) -> Self {
+        Self { leaves: false, ..self }
     }
 
     /// Positions of the nodes, then of the centres.
@@ -132,7 +141,7 @@ impl TipToFacet {
         let along = foot.tangent * foot.measure.recip();
         let near = NodeToFacet::NEAR_END * length;
         let meets = |&node: &usize| (places.at(node) - center - foot.position).dot(&along).abs() < near;
-        let meets_node = self.side.nodes_of(pair.facet).iter().any(meets);
+        let meets_node = self.leaves && self.side.nodes_of(pair.facet).iter().any(meets);
         let Some([first, last]) = tip.normals else { return !meets_node };
         let normal = self.local([center[0], center[1], 0.0], y).back([-foot.normal[0], -foot.normal[1], 0.0]);
         let cross = |a: Point, b: Point| a[0] * b[1] - a[1] * b[0];
@@ -141,6 +150,25 @@ impl TipToFacet {
         let is_between = cross(first, normal) >= 0.0 && cross(normal, last) >= 0.0;
         let faces = is_parallel || is_between && dot(first, normal) + dot(last, normal) > 0.0;
         faces && !(meets_node && (is_parallel || tip.radius > 0.0))
+    }
+
+    /// Adds pairs of a round part with the facets next to that of a pair that it penetrates too: near
+    /// a concave joint it touches both before its centre faces the joint.
+    fn beside(&self, pair: &Pair, y: &[f64], known: &[Pair], found: &mut Vec<Pair>) {
+        let places = Places::new(y, 2);
+        let center = places.at(self.nodes + pair.node);
+        for facet in
+            [false, true].into_iter().filter_map(|ahead| self.side.neighbour_of_side(pair.facet, ahead))
+        {
+            let is_same = |other: &Pair| other.node == pair.node && other.facet == facet;
+            let Some(xi) = self.side.facet(facet).closest_point(places, center, 1.0) else { continue };
+            let other = Pair::open(pair.node, facet, xi);
+            let height = self.centers.gap_of(&other, places).distance;
+            let enters = height > 0.0 && height + self.centers.slack(pair.node) < 0.0;
+            if enters && !known.iter().chain(found.iter()).any(is_same) && self.acts(&other, y) {
+                found.push(other);
+            }
+        }
     }
 
     /// Adds a row over the nodes of a facet and the carrying nodes, whose gradients are multiples of
@@ -176,7 +204,7 @@ impl TipToFacet {
         for event in &mut events[first..] {
             match event {
                 PairEvent::HandOver { node, .. } | PairEvent::SlidOff { node, .. } => {
-                    *node = self.name(*node)
+                    *node = self.name(*node);
                 }
             }
         }
@@ -230,7 +258,13 @@ impl Kinematics for TipToFacet {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let [before, now] = [before, now].map(|y| self.with_centers(y));
-        self.named(events, |events| self.centers.search(&before, &now, pairing, events))
+        let changed = self.named(events, |events| self.centers.search(&before, &now, pairing, events));
+        let known = pairing.pairs.len();
+        let mut beside = Vec::new();
+        pairing.pairs.iter().for_each(|pair| self.beside(pair, &now, &pairing.pairs, &mut beside));
+        pairing.pairs.append(&mut beside);
+        in_order(&mut pairing.pairs);
+        changed || pairing.pairs.len() > known
     }
 
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {

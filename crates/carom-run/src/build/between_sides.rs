@@ -90,6 +90,8 @@ impl Bodies<'_> {
         let siblings = self.siblings(k, side.part, Which::Secondary);
         let surface = self.surface(side, &siblings.concat());
         let tips = TipToFacet::new(&obstacle, surface, self.reference);
+        let springs = self.case.contacts[k].enforcement == case::Enforcement::Penalty;
+        let tips = if springs { tips.with_springs() } else { tips };
         Box::new(WithTips::new(obstacle, tips))
     }
 
