@@ -183,6 +183,19 @@ pub enum ContactError {
         /// Global number of the secondary node.
         node: usize,
     },
+    /// A convex part of a rigid obstacle has no unique closest point on a facet, or is far past its
+    /// end.
+    #[error(
+        "the convex part of the rigid obstacle near node {node} has no unique closest point on facet {facet}, which it touched at ξ = {xi:.3}"
+    )]
+    Tip {
+        /// Global number of the node that represents the part.
+        node: usize,
+        /// Facet of the pair.
+        facet: usize,
+        /// Coordinate ξ of the last contact point on the facet.
+        xi: f64,
+    },
     /// Two edges run along each other, or have left each other, so that there are no closest
     /// points.
     #[error(

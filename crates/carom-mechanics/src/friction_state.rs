@@ -91,7 +91,7 @@ pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
     let rubs = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
     // Edges have none.
     let nodes =
-        rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.nodes()));
+        rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.rubbing()));
     for pair in nodes.filter(|pair| pair.active) {
         rubbed.contact_time += dt;
         rubbed.stick_time += if pair.tangential.friction_state == FrictionState::Stick { dt } else { 0.0 };

@@ -33,6 +33,7 @@ impl Rejected {
                 let (node, facet) = match *error {
                     ContactError::Focal { node, facet, .. }
                     | ContactError::Lost { node, facet, .. }
+                    | ContactError::Tip { node, facet, .. }
                     | ContactError::Edges { node, facet } => (node, Some(facet)),
                     ContactError::Center { node } => (node, None),
                 };

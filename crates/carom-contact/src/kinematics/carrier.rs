@@ -87,6 +87,14 @@ impl Carrier {
         Local { at, weights, inverse, slopes }
     }
 
+    /// Weights w_a(p) of the carrying nodes in the position of a point p of the obstacle.
+    pub(super) fn weights(&self, p: Point) -> impl Iterator<Item = f64> + '_ {
+        let arm =
+            move |a: usize| if self.turns() { (p[a - 1] - self.origin[a - 1]) / self.length } else { 0.0 };
+        let arms = move || (1..self.nodes.len()).map(arm);
+        std::iter::once(1.0 - arms().sum::<f64>()).chain(arms())
+    }
+
     /// Position x(p) in space of a point p of the obstacle.
     pub(super) fn placed(&self, p: Point, y: &[f64], dimension: usize) -> Point {
         let coordinate = |a: usize, i: usize| {

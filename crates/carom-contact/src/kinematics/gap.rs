@@ -30,12 +30,12 @@ use crate::places::Places;
 
 /// Gap of a node over the point ξ of a facet in the plane, with its derivatives.
 pub(crate) struct Gap {
-    at: FacetPoint,
-    shape: LineShape,
+    pub(crate) at: FacetPoint,
+    pub(crate) shape: LineShape,
     /// Gap g.
     pub(crate) distance: f64,
     tau: f64,
-    kappa: f64,
+    pub(crate) kappa: f64,
     /// Second derivative a of half the squared distance by ξ; positive at a unique closest point.
     pub(crate) a: f64,
 }

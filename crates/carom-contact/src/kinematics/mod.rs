@@ -12,6 +12,7 @@ mod facing;
 mod folds;
 mod gap;
 mod hand_over;
+mod joined;
 mod joint;
 mod mirror;
 mod node_to_facet;
@@ -27,6 +28,7 @@ mod space;
 mod surface;
 mod swept;
 mod tangents;
+mod tip_to_facet;
 mod trajectory;
 mod way;
 
@@ -36,15 +38,17 @@ pub(crate) use facets::Facets;
 pub use facets::{Depth, OnFacet};
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
+pub use joined::{Joined, WithEdges, WithTips};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::NodeToObstacle;
 pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError, Tip};
 pub use one_way::OneWay;
 pub use passed::Passed;
 pub(crate) use space::cross;
-pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch, WithEdges};
+pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch};
 pub use surface::Surface;
 pub use swept::{Crossings, SpaceHit, Swept, SweptEdges, SweptPatch, SweptTest};
+pub use tip_to_facet::TipToFacet;
 pub(crate) use way::amplification;
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -57,8 +61,15 @@ pub trait Kinematics: Send + Sync {
     fn secondary(&self) -> &[usize];
 
     /// Number of secondary nodes. Sharp edges follow the nodes in [`secondary`](Self::secondary),
-    /// each represented by one of its nodes.
+    /// each represented by one of its nodes, and so do convex parts of an obstacle, each
+    /// represented by the node that is nearest to it in the reference configuration.
     fn nodes(&self) -> usize {
+        self.secondary().len()
+    }
+
+    /// Number of the first entries of [`secondary`](Self::secondary) that can have friction: all
+    /// but sharp edges.
+    fn rubbing(&self) -> usize {
         self.secondary().len()
     }
 

@@ -69,6 +69,8 @@ pub struct NodeToFacet {
     allowed: Vec<f64>,
     /// Initial depth that is kept for each node; empty if all are zero.
     kept: Vec<f64>,
+    /// Radius of the circle around each node that must not penetrate; empty if all are zero.
+    radii: Vec<f64>,
     /// For contact of a side with itself: where its boundary folds, and which of two places that
     /// meet is that of the nodes.
     pub(super) folds: Option<(Arc<Folds>, Side)>,
@@ -98,6 +100,7 @@ impl NodeToFacet {
             point: ContactPoint::Closest,
             allowed: Vec::new(),
             kept: Vec::new(),
+            radii: Vec::new(),
             folds: None,
             own: None,
             tools: Mutex::new(tools),
@@ -116,6 +119,14 @@ impl NodeToFacet {
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
+    }
+
+    /// Contact of circles around the nodes, whose gaps are smaller by their radii.
+    #[must_use]
+    pub(super) fn with_radii(mut self, radii: Vec<f64>) -> Self {
+        let tools = self.tools.get_mut().unwrap_or_else(PoisonError::into_inner);
+        tools.search.reach_out(radii.iter().copied().fold(0.0, f64::max));
+        Self { radii, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -162,9 +173,10 @@ impl NodeToFacet {
         self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
     }
 
-    /// Depth at which the gap of a node is zero: its allowed and its kept depth.
+    /// Depth at which the gap of a node is zero: its allowed and its kept depth, less the radius of
+    /// its circle.
     pub(super) fn slack(&self, place: usize) -> f64 {
-        self.allowed(place) + self.kept(place)
+        self.allowed(place) + self.kept(place) - self.radii.get(place).copied().unwrap_or(0.0)
     }
 
     /// The point of the primary side nearest to a secondary node that faces it, and the gap there.
@@ -199,7 +211,7 @@ impl NodeToFacet {
     }
 
     /// Gap of a pair at its contact point.
-    fn gap_of(&self, pair: &Pair, y: Places) -> Gap {
+    pub(super) fn gap_of(&self, pair: &Pair, y: Places) -> Gap {
         let facet = self.primary.facet(pair.facet);
         let from = y.at(self.secondary[pair.node]);
         match self.point {

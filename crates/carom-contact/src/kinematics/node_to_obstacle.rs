@@ -31,8 +31,8 @@ use crate::rows::Rows;
 pub struct NodeToObstacle {
     secondary: Vec<usize>,
     dimension: usize,
-    shape: Obstacle,
-    carrier: Option<Carrier>,
+    pub(super) shape: Obstacle,
+    pub(super) carrier: Option<Carrier>,
     /// Length of the facets at each secondary node; empty if the nodes have no facets.
     lengths: Vec<f64>,
     /// Initial depth that is kept for each node; empty if all are zero.

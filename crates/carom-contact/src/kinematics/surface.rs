@@ -200,6 +200,8 @@ pub(crate) struct Search {
     tree: Tree,
     found: Vec<usize>,
     apart: Apart,
+    /// Distance from the paths of the nodes within which facets are found.
+    reach: f64,
 }
 
 impl Search {
@@ -208,7 +210,12 @@ impl Search {
         let hull = Hull::line(surface.shape.nodes(), 1.0);
         let both = surface.nodes.iter().chain(nodes).copied();
         let apart = Apart::new(both, surface.shape.dimension(), hull.weight());
-        Self { hull, tree: Tree::default(), found: Vec::new(), apart }
+        Self { hull, tree: Tree::default(), found: Vec::new(), apart, reach: 0.0 }
+    }
+
+    /// Finds facets up to a distance from the paths of the nodes.
+    pub(crate) fn reach_out(&mut self, reach: f64) {
+        self.reach = reach;
     }
 
     /// Whether no node comes near a facet, as far as it is known without [`Self::update`].
@@ -247,7 +254,7 @@ impl Search {
             all.add(to);
             longest = from.iter().zip(to).fold(longest, |most, (from, to)| most.max((to - from).abs()));
         }
-        let all = all.grown(PATH_MARGIN * longest);
+        let all = all.grown(PATH_MARGIN * longest + self.reach);
         let facets = self.tree.bounds();
         self.apart.searched([&facets, &all], [margin, PATH_MARGIN], now.flat());
         facets.meets(&all)
@@ -255,7 +262,8 @@ impl Search {
 
     /// Finds the facets whose path is near a node's path, ascending.
     pub(crate) fn find(&mut self, node: usize, before: Places, now: Places) {
-        self.tree.find_into(&path([before, now].map(|y| y.coordinates(node))), &mut self.found);
+        let path = path([before, now].map(|y| y.coordinates(node))).grown(self.reach);
+        self.tree.find_into(&path, &mut self.found);
     }
 
     /// The hierarchy of the bounding boxes of the paths of facets.

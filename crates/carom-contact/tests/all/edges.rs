@@ -58,7 +58,7 @@ fn roofs(
     let allowed = vec![1.0; nodes(lower).len()];
     let reverse = NodeToPatch::new(nodes(lower), above).with_allowed(allowed);
     let both = BothSides::new(NodeToPatch::new(nodes(upper), below), reverse);
-    (WithEdges::new(both, edges, lower.len()), y)
+    (WithEdges::new(both, edges), y)
 }
 
 fn straight(x: [f64; 3]) -> [f64; 3] {

@@ -12,4 +12,5 @@ mod obstacles_in_space;
 mod slip;
 mod slip_in_space;
 mod space;
+mod tips;
 mod update_facets;

@@ -178,12 +178,15 @@ impl Penetration {
             }
         }
         for (contact, part, pierced) in self.pierced(model, &state.y) {
-            let Pierced { node, depth, limit } = pierced;
+            let Pierced { node, place, depth, counts, limit } = pierced;
+            if depth > counts || state.closed(contact, place).is_some() {
+                deepest.add(depth, counts == 0.0);
+            }
             let inside = Inside { node, what: What::Obstacle, depth, limit };
             beyond = beyond.or((depth > limit).then_some((contact, part, inside)));
         }
         for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
-            for node in 0..contact.kinematics.secondary().len() {
+            for node in 0..contact.kinematics.nodes() {
                 let gap = contact.kinematics.signed_distance(node, &state.y);
                 deepest.add(-gap.unwrap_or(0.0), true);
             }
@@ -371,11 +374,13 @@ impl Penetration {
             found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
         }
         // Chords of facets lie in what their nodes touch.
-        let pierced = self.pierced(model, y).into_iter().filter(|(.., p)| p.depth > p.limit);
+        let is_too_deep = |p: &Pierced| p.depth > p.limit.min(p.counts + limit);
+        let pierced = self.pierced(model, y).into_iter().filter(|(.., p)| is_too_deep(p));
         found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact))
         {
-            let secondary = contact.kinematics.secondary().iter().enumerate();
+            let secondary =
+                contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
             let depth =
                 |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
             found.extend(secondary.map(depth));

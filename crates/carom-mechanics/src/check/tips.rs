@@ -2,8 +2,10 @@
 //! circle, a sphere or a corner on both sides of it.
 //!
 //! A centre at a distance d from the boundary of a body, negative inside, with the radius r lies
-//! r − d deep. Nothing is measured before the two can have met. The depth is not part of the
-//! recorded penetration: where nodes lie on a circle, the chords between them are inside.
+//! r − d deep. Nothing is measured before the two can have met. Where the contact holds the parts
+//! (`tip_to_facet.rs` of `carom-contact`), the depth counts as penetration if the part is in contact
+//! or deeper than nodes alone permit: where they lie on a wide circle, the chords between them are
+//! inside.
 
 use std::sync::Arc;
 
@@ -11,7 +13,8 @@ use crate::check::skins::{BodySkin, length, part_of, skin_nodes};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
 
-/// Allowed depth over the length of a facet: chords of facets that lie on a circle are inside it.
+/// Allowed depth, over the length of a facet, of parts that the contact does not hold: chords of
+/// facets that lie on a circle are inside it.
 const SHARE: f64 = 0.25;
 
 /// A round part of the obstacle of a contact.
@@ -33,7 +36,11 @@ pub(crate) struct Tip {
 pub(crate) struct Pierced {
     /// A node of the nearest facet.
     pub node: usize,
+    /// Its index among the secondary nodes of its contact.
+    pub place: usize,
     pub depth: f64,
+    /// Depth up to which it does not count; infinite if the contact does not hold it.
+    pub counts: f64,
     pub limit: f64,
 }
 
@@ -77,7 +84,8 @@ impl Tip {
         y: &[f64],
     ) -> Option<Pierced> {
         let contact = &model.contacts[self.contact];
-        let carom_contact::Tip { center: at, radius } = *contact.kinematics.tips(y).get(self.number)?;
+        let tip = *contact.kinematics.tips(y).get(self.number)?;
+        let carom_contact::Tip { center: at, radius, .. } = tip;
         let square: f64 = (0..3).map(|i| (at[i] - self.at[i]).powi(2)).sum();
         (self.clearance, self.at) = (self.clearance - square.sqrt(), at);
         if self.clearance > 0.0 {
@@ -91,7 +99,12 @@ impl Tip {
         let nodes = 0..contact.kinematics.secondary().len();
         let kept = nodes.map(|node| contact.kinematics.kept(node)).fold(0.0, f64::max);
         let facet = skin.facet_nodes(found.facet);
-        let limit = SHARE.max(contact.depths.others) * length(model, facet);
-        Some(Pierced { node: facet[0], depth: radius - found.distance - kept, limit })
+        let depth = radius - found.distance - kept;
+        let place = contact.kinematics.nodes() + self.number;
+        let is_held = place < contact.kinematics.secondary().len();
+        let length = length(model, facet);
+        let counts = if is_held { tip.permitted(length) } else { f64::INFINITY };
+        let limit = SHARE.max(contact.depths.others) * length;
+        Some(Pierced { node: facet[0], place, depth, counts, limit })
     }
 }

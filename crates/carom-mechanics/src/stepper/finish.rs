@@ -6,7 +6,7 @@ use carom_contact::Rows;
 
 use super::meetings::{Path, meetings};
 use super::watch::depth;
-use super::{Accepted, StepReport, difference};
+use super::{Accepted, StepReport, difference, nodes_at};
 use crate::carried;
 use crate::friction_state::book_states;
 use crate::model::Model;
@@ -46,8 +46,9 @@ impl Finish<'_> {
         let Self { model, start, dt, .. } = self;
         // The round-off of increments does not accumulate between tied sides.
         model.points.carry(&mut next.y);
-        report.activations = difference(model, &next, start);
-        report.releases = difference(model, start, &next);
+        report.activations = nodes_at(model, &difference(&next, start));
+        let released = difference(start, &next);
+        report.releases = nodes_at(model, &released);
         report.meetings = meetings(model, &next, &report.activations, &self.paths);
         if let Some(bound) = self.leaves {
             let depth = depth(model, &next);
@@ -64,8 +65,8 @@ impl Finish<'_> {
             report.projection = jump;
             carried::project(&mut next, self.carried);
         }
-        if !report.releases.is_empty() {
-            report.restitution = separate(model, &mut next, &report.releases, &mut work.system)?;
+        if !released.is_empty() {
+            report.restitution = separate(model, &mut next, &released, &mut work.system)?;
         }
         let continues = projected.is_none() && report.activations.is_empty();
         next.previous = self.previous.filter(|_| continues);

@@ -129,20 +129,28 @@ pub trait Stepper: Send + Sync {
     ) -> Result<Accepted, Rejected>;
 }
 
-/// Nodes with an active pair in `a` and none in `b`: (contact, global node). A node in contact that
-/// slides into a concave corner does not come into contact.
-fn difference(model: &Model, a: &State, b: &State) -> Vec<(usize, usize)> {
-    let mut nodes = Vec::new();
-    for (k, contact) in model.contacts.iter().enumerate() {
+/// Nodes with an active pair in `a` and none in `b`: (contact, index of the secondary node). A node
+/// in contact that slides into a concave corner does not come into contact.
+fn difference(a: &State, b: &State) -> Vec<(usize, usize)> {
+    let mut places = Vec::new();
+    for (k, (pairs, others)) in a.pairs.iter().zip(&b.pairs).enumerate() {
         // Both ascend by node.
-        let mut others = b.pairs[k].iter().filter(|pair| pair.active).peekable();
-        for pair in a.pairs[k].iter().filter(|pair| pair.active) {
+        let mut others = others.iter().filter(|pair| pair.active).peekable();
+        for pair in pairs.iter().filter(|pair| pair.active) {
             while others.next_if(|other| other.node < pair.node).is_some() {}
-            let node = (k, contact.node(pair));
-            if others.peek().is_none_or(|other| other.node != pair.node) && nodes.last() != Some(&node) {
-                nodes.push(node);
+            let place = (k, pair.node);
+            if others.peek().is_none_or(|other| other.node != pair.node) && places.last() != Some(&place) {
+                places.push(place);
             }
         }
     }
+    places
+}
+
+/// Global numbers of secondary nodes that are given by contact and index.
+fn nodes_at(model: &Model, places: &[(usize, usize)]) -> Vec<(usize, usize)> {
+    let node = |&(k, place): &(usize, usize)| (k, model.contacts[k].kinematics.secondary()[place]);
+    let mut nodes: Vec<(usize, usize)> = places.iter().map(node).collect();
+    nodes.dedup();
     nodes
 }

@@ -70,8 +70,8 @@ pub(crate) fn take(model: &Model, state: &mut State, energy: f64) {
     state.ledger.owed += restitution * restitution * energy;
 }
 
-/// Returns energy where contact ends: `released` are the contacts and secondary nodes of pairs that
-/// opened in the step. The jump of kinetic energy is recorded as contact work and returned.
+/// Returns energy where contact ends: `released` are the contacts and indices of secondary nodes of
+/// pairs that opened in the step. The jump of kinetic energy is recorded as contact work and returned.
 pub(crate) fn separate(
     model: &Model,
     state: &mut State,
@@ -82,8 +82,7 @@ pub(crate) fn separate(
         return Ok(0.0);
     }
     let opened = |&(k, node): &(usize, usize)| {
-        let secondary = model.contacts[k].kinematics.secondary();
-        let opens = |pair: &Pair| secondary[pair.node] == node && !pair.active;
+        let opens = |pair: &Pair| pair.node == node && !pair.active;
         let p = state.pairs[k].iter().position(opens)?;
         model.contacts[k].conserves().then_some((k, p))
     };

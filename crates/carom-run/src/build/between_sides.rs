@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
-    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToPatch,
-    NodesWithDepth, Surface, WithEdges,
+    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToObstacle,
+    NodeToPatch, NodesWithDepth, Surface, TipToFacet, WithEdges, WithTips,
 };
 use carom_mechanics::model::BodyInstance;
 
@@ -79,7 +79,20 @@ impl Bodies<'_> {
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
             .of_body(opposite.clone());
         let others = NodeToPatch::new(own.nodes, opposite).with_allowed(own.depths).of_body(side);
-        WithEdges::new(BothSides::new(nodes, others), edges, primary.facets.len())
+        WithEdges::new(BothSides::new(nodes, others), edges)
+    }
+
+    /// Contact with a rigid obstacle, in the plane with its convex parts.
+    pub(super) fn with_tips(&self, k: usize, side: &Side, obstacle: NodeToObstacle) -> Box<dyn Kinematics> {
+        if self.case.dimension != 2 || obstacle.tips(self.reference).is_empty() {
+            return Box::new(obstacle);
+        }
+        let siblings = self.siblings(k, side.part, Which::Secondary);
+        let surface = self.surface(side, &siblings.concat());
+        let tips = TipToFacet::new(&obstacle, surface, self.reference);
+        let springs = self.case.contacts[k].enforcement == case::Enforcement::Penalty;
+        let tips = if springs { tips.with_springs() } else { tips };
+        Box::new(WithTips::new(obstacle, tips))
     }
 
     fn itself(&self, side: &Side) -> BothSides<NodeToFacet> {

@@ -89,7 +89,7 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         Enforcement::Multiplier => Vec::new(),
         _ => stiffnesses(kinematics.secondary(), parts),
     };
-    let rubbing = &kinematics.secondary()[..kinematics.nodes()];
+    let rubbing = &kinematics.secondary()[..kinematics.rubbing()];
     let stick = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
     let mut friction = friction(case, spec, rubbing, reference, &facets)?;
     if let Some(friction) = &mut friction {
@@ -138,10 +138,14 @@ fn kinematics(
     let d = bodies.case.dimension;
     let lengths = longest(&nodes, &secondary.facets, bodies.reference, d);
     let contact = NodeToObstacle::new(nodes, d, shape).with_lengths(lengths);
-    Box::new(match obstacle {
-        Some(obstacle) => contact.carried_by(obstacle.carrier.clone()),
-        None => contact,
-    })
+    bodies.with_tips(
+        k,
+        secondary,
+        match obstacle {
+            Some(obstacle) => contact.carried_by(obstacle.carrier.clone()),
+            None => contact,
+        },
+    )
 }
 
 /// The law of the normal forces; `springs`: the stiffness of each node.

@@ -102,7 +102,7 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
                 pressure: mean(&pressure_at),
                 normal,
                 friction: match (&contact.friction, pair.tangential.friction_state) {
-                    _ if pair.node >= contact.kinematics.nodes() => "none",
+                    _ if pair.node >= contact.kinematics.rubbing() => "none",
                     (None, _) => "none",
                     (_, FrictionState::Stick) => "stick",
                     (_, FrictionState::Slip(_)) => "slip",

@@ -86,7 +86,7 @@ impl Obstacle {
     pub(crate) fn tips(&self) -> Vec<Tip> {
         match self {
             Self::Circle { center, radius, inside: false, .. } => {
-                vec![Tip { center: *center, radius: *radius }]
+                vec![Tip { center: *center, radius: *radius, size: *radius, normals: None }]
             }
             Self::Polyline(line) => line.tips().collect(),
             _ => Vec::new(),

@@ -24,6 +24,11 @@ pub struct Tip {
     pub center: [f64; 3],
     /// Radius ≥ 0.
     pub radius: f64,
+    /// Radius of curvature of the obstacle, seen from afar: that of the part, or of an arc that a
+    /// blunt corner and others like it approximate.
+    pub size: f64,
+    /// Outward normals of the obstacle between which the part lies; none of a whole circle.
+    pub normals: Option<[[f64; 3]; 2]>,
 }
 
 /// Where a point on a straight path enters an obstacle.

@@ -122,12 +122,28 @@ impl Polyline {
 
     /// The convex corners of the polyline.
     pub(crate) fn tips(&self) -> impl Iterator<Item = Tip> + '_ {
-        self.pieces.iter().filter_map(|piece| match piece {
-            Piece::Corner { center, radius, side, .. } if *side > 0.0 => {
-                Some(Tip { center: *center, radius: *radius })
+        self.pieces.iter().enumerate().filter_map(|(piece, of)| match of {
+            Piece::Corner { center, radius, side, normals } if *side > 0.0 => {
+                let [first, last] = *normals;
+                let cosine = dot(first, last);
+                let is_blunt = cosine >= CORNER_COSINE;
+                // An arc through the middles of the segments has the chord tan(φ/2) of its radius.
+                let tangent = cross(first, last).abs() / (1.0 + cosine);
+                let arc = if is_blunt { 0.5 * self.shorter_beside(piece) / tangent } else { 0.0 };
+                Some(Tip { center: *center, radius: *radius, size: radius + arc, normals: Some(*normals) })
             }
             _ => None,
         })
+    }
+
+    /// Length of the shorter one of the segments beside a corner; infinite if both continue to
+    /// infinity.
+    fn shorter_beside(&self, corner: usize) -> f64 {
+        let length = |forward: bool| match self.pieces[self.neighbour(corner, forward)?] {
+            Piece::Segment { length, ends: [true, true], .. } => Some(length),
+            _ => None,
+        };
+        [false, true].into_iter().filter_map(length).fold(f64::INFINITY, f64::min)
     }
 
     /// Number of pieces of the polyline: segments and corners.

@@ -65,7 +65,7 @@ impl EdgeToEdge {
 
     /// The edge that was deepest beyond its limit in the body of another edge within a step;
     /// `bounce`: allowed depth of a node, relative to the length of a facet.
-    pub(super) fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+    pub(super) fn passed_edge(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let mut swept = self.swept();
         let mut between: Option<Between<3>> = None;
         let mut worst: Option<Passed> = None;

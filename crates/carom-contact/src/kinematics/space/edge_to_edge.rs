@@ -18,9 +18,9 @@ use super::edge_gap::EdgeGap;
 use super::edges::Edges;
 use super::folds::PatchFolds;
 use crate::friction::{FrictionState, Tangential};
-use crate::kinematics::SweptEdges;
 use crate::kinematics::apart::Apart;
 use crate::kinematics::tangents::tangents;
+use crate::kinematics::{Kinematics, Passed, SweptEdges};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -67,6 +67,8 @@ pub(super) struct OnEdges {
 pub struct EdgeToEdge {
     /// Sharp edges of the secondary side and of the primary side.
     sides: [Edges; 2],
+    /// A node of every edge of the secondary side, which represents the edge.
+    names: Vec<usize>,
     /// For contact of a side with itself: the order of its places.
     folds: Option<Arc<PatchFolds>>,
     tools: Mutex<Tools>,
@@ -93,7 +95,8 @@ impl EdgeToEdge {
         let weight = sides[0].weight() + sides[1].weight();
         let apart = Apart::new(nodes.copied(), 3, weight);
         let tools = Mutex::new(Tools { tree: Tree::default(), apart });
-        Self { sides, folds: None, tools, swept: Mutex::default() }
+        let names = (0..sides[0].len()).map(|edge| sides[0].nodes(edge)[0]).collect();
+        Self { sides, names, folds: None, tools, swept: Mutex::default() }
     }
 
     /// Contact of the edges of a side with each other; both sides are equal.
@@ -118,21 +121,6 @@ impl EdgeToEdge {
             let [here, there] = [own, other].map(|edge| self.sides[0].facet(edge));
             folds.are_of_different_pieces(here, there)
         })
-    }
-
-    /// A node of every edge of the secondary side, which represents the edge.
-    pub(super) fn names(&self) -> impl Iterator<Item = usize> {
-        (0..self.sides[0].len()).map(|edge| self.sides[0].nodes(edge)[0])
-    }
-
-    /// Number of sharp edges of the primary side.
-    pub(super) fn count(&self) -> usize {
-        self.sides[1].len()
-    }
-
-    /// Nodes of the edge of the primary side in a pair, ends first.
-    pub(super) fn nodes_of(&self, pair: &Pair) -> &[usize] {
-        self.sides[1].nodes(self.of(pair)[1])
     }
 
     /// Numbers of the two edges of a pair, each on its side.
@@ -299,37 +287,6 @@ impl EdgeToEdge {
         (changed, pairing.pairs.iter().map(held).collect())
     }
 
-    pub(super) fn search(
-        &self,
-        before: &[f64],
-        now: &[f64],
-        pairing: &mut Pairing,
-        events: &mut Vec<PairEvent>,
-    ) -> bool {
-        let (mut changed, mut all) = self.follow([before, now], pairing, events);
-        self.each_near(before, now, |edges| {
-            if all.iter().any(|(known, _)| *known == edges) {
-                return;
-            }
-            let Some(gap) = self.candidate(edges, before, now) else { return };
-            let near = TOGETHER * self.shorter(edges, now);
-            let is_held = all.iter().any(|(known, other)| {
-                let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
-                let same = |other: &EdgeGap| {
-                    (other.point(0) - gap.point(0)).norm() < near && other.normal.dot(&gap.normal) > PARALLEL
-                };
-                joins && other.as_ref().is_some_and(same)
-            });
-            if !is_held {
-                changed = true;
-                pairing.pairs.push(self.pair(edges, gap.xi));
-                all.push((edges, Some(gap)));
-            }
-        });
-        pairing.pairs.sort_by_key(|pair| (pair.node, pair.facet));
-        changed
-    }
-
     /// Calls `visit` for the edges whose paths come near each other, in order.
     pub(super) fn each_near(&self, before: &[f64], now: &[f64], mut visit: impl FnMut([usize; 2])) {
         if self.sides.iter().any(|side| side.len() == 0) {
@@ -360,7 +317,7 @@ impl EdgeToEdge {
     /// First instant θ at which an edge of the secondary side meets one of the primary: that of the
     /// certified crossing or, for edges that were in contact before, that at which a linear gap
     /// vanishes.
-    pub(super) fn met(&self, edge: usize, before: &[f64], now: &[f64]) -> Option<f64> {
+    fn first_met(&self, edge: usize, before: &[f64], now: &[f64]) -> Option<f64> {
         let mut first: Option<f64> = None;
         self.each_near(before, now, |edges| {
             if edges[0] == edge
@@ -385,7 +342,90 @@ impl EdgeToEdge {
         ContactError::Edges { node: self.sides[0].nodes(pair.node)[0], facet: pair.facet }
     }
 
-    pub(super) fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    /// Adds a row over the nodes of both edges.
+    fn push(&self, edges: [usize; 2], gap: f64, slopes: impl Iterator<Item = Vector<3>>, rows: &mut Rows) {
+        let nodes = [0, 1].map(|i| self.nodes(edges, i));
+        rows.push_both(gap, nodes, slopes);
+        rows.begin_with_edge(nodes[0].len());
+    }
+}
+
+impl Kinematics for EdgeToEdge {
+    fn secondary(&self) -> &[usize] {
+        &self.names
+    }
+
+    fn nodes(&self) -> usize {
+        0
+    }
+
+    fn rubbing(&self) -> usize {
+        0
+    }
+
+    fn keep(&mut self, _: &[f64]) {}
+
+    fn kept(&self, _: usize) -> f64 {
+        0.0
+    }
+
+    fn facet_nodes(&self, pair: &Pair) -> &[usize] {
+        self.sides[1].nodes(self.of(pair)[1])
+    }
+
+    fn is_on_facet(&self, _: &Pair) -> bool {
+        false
+    }
+
+    fn facets(&self, _: usize) -> usize {
+        self.sides[1].facets() + self.sides[1].len()
+    }
+
+    /// Infinite: an edge has no gap without the other one.
+    fn signed_distance(&self, _: usize, _: &[f64]) -> Option<f64> {
+        Some(f64::INFINITY)
+    }
+
+    fn search(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
+        let (mut changed, mut all) = self.follow([before, now], pairing, events);
+        self.each_near(before, now, |edges| {
+            if all.iter().any(|(known, _)| *known == edges) {
+                return;
+            }
+            let Some(gap) = self.candidate(edges, before, now) else { return };
+            let near = TOGETHER * self.shorter(edges, now);
+            let is_held = all.iter().any(|(known, other)| {
+                let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
+                let same = |other: &EdgeGap| {
+                    (other.point(0) - gap.point(0)).norm() < near && other.normal.dot(&gap.normal) > PARALLEL
+                };
+                joins && other.as_ref().is_some_and(same)
+            });
+            if !is_held {
+                changed = true;
+                pairing.pairs.push(self.pair(edges, gap.xi));
+                all.push((edges, Some(gap)));
+            }
+        });
+        pairing.pairs.sort_by_key(|pair| (pair.node, pair.facet));
+        changed
+    }
+
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        self.passed_edge(before, now, bounce)
+    }
+
+    fn met(&self, edges: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
+        edges.iter().map(|&edge| self.first_met(edge, before, now)).collect()
+    }
+
+    fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let edges = self.of(pair);
         let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
         [pair.xi, pair.eta] = gap.xi;
@@ -398,25 +438,23 @@ impl EdgeToEdge {
         Ok(())
     }
 
-    /// Adds a row over the nodes of both edges.
-    fn push(&self, edges: [usize; 2], gap: f64, slopes: impl Iterator<Item = Vector<3>>, rows: &mut Rows) {
-        let nodes = [0, 1].map(|i| self.nodes(edges, i));
-        rows.push_both(gap, nodes, slopes);
-        rows.begin_with_edge(nodes[0].len());
-    }
-
-    pub(super) fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
         match self.gap_of(pair, y) {
             Some(gap) => gap.curvature_into(curvature),
             None => curvature.fill(0.0),
         }
     }
 
-    pub(super) fn slip(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
         for along in tangents(gap.normal, pair.tangential.tangents) {
             self.push(self.of(pair), 0.0, gap.slip(along), rows);
         }
         Ok(())
+    }
+
+    /// Zero: edges have no friction, whose force would need it.
+    fn slip_derivative_into(&self, _: &Pair, _: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
+        matrix.fill(0.0);
     }
 }

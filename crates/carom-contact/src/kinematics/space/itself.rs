@@ -10,8 +10,7 @@ use super::edge_to_edge::EdgeToEdge;
 use super::folds::PatchFolds;
 use super::node_to_patch::{NodeToPatch, PAST};
 use super::paths::Paths;
-use super::with_edges::WithEdges;
-use crate::kinematics::{BothSides, NodesWithDepth, Side};
+use crate::kinematics::{BothSides, NodesWithDepth, Side, WithEdges};
 
 impl WithEdges {
     /// A side against itself: its nodes in the role of the later place, and those in the role of
@@ -34,7 +33,7 @@ impl WithEdges {
         let edges = EdgeToEdge::new([side.clone(), side.clone()], &others, reference).folding(folds.clone());
         let reverse = of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths);
         let both = BothSides::new(of(nodes, Side::Later), reverse);
-        Self::new(both, edges, side.facets())
+        Self::new(both, edges)
     }
 }
 

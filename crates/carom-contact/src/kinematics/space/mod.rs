@@ -19,11 +19,9 @@ mod node_to_patch;
 mod passed;
 mod patch;
 mod paths;
-mod with_edges;
 
 pub use boundary::Boundary;
 pub use closed_surface::ClosedSurface;
 pub use edge_to_edge::EdgeToEdge;
 pub use node_to_patch::NodeToPatch;
 pub(crate) use patch::{Feature, cross};
-pub use with_edges::WithEdges;
