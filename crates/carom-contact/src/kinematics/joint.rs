@@ -40,6 +40,19 @@ pub(super) trait OnFacets {
     /// The joint of its facet over which a pair lies, if it does.
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8>;
 
+    /// Finds the joints over which pairs lie at the start of a solve. A node that has a pair with
+    /// every facet of a concave joint keeps these.
+    fn start_joints(&self, pairs: &mut [Pair], y: &[f64]) {
+        let nodes: Vec<usize> = pairs.iter().map(|pair| pair.node).collect();
+        for pair in pairs {
+            pair.joint = self.joint_of(pair, y);
+            let meets = || nodes.iter().filter(|&&node| node == pair.node).count();
+            if pair.joint.is_some() && meets() == self.parts(pair, y).len() {
+                pair.joint = None;
+            }
+        }
+    }
+
     /// Takes active pairs off joints where a facet's gap differs from the mean by more than round-off
     /// in positions: the node has slid away. Returns their nodes.
     fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> Vec<usize> {

@@ -354,8 +354,8 @@ impl Kinematics for NodeToFacet {
         let left = self.leave_joints(&mut pairing.pairs, now.flat());
         let slid = self.slide(before, now, pairing, events)
             | self.take_joints(&mut pairing.pairs, &left, now.flat());
-        for pair in pairing.pairs.iter_mut().filter(|_| starts) {
-            pair.joint = self.joint_of(pair, before.flat());
+        if starts {
+            self.start_joints(&mut pairing.pairs, before.flat());
         }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);

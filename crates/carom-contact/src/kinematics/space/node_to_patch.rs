@@ -415,8 +415,8 @@ impl Kinematics for NodeToPatch {
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let left = self.leave_joints(&mut pairing.pairs, now);
         let slid = self.slide(now, pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
-        for pair in pairing.pairs.iter_mut().filter(|_| starts) {
-            pair.joint = self.joint_of(pair, before);
+        if starts {
+            self.start_joints(&mut pairing.pairs, before);
         }
         let Pairing { pairs, margin, .. } = pairing;
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
