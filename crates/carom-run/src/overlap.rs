@@ -50,6 +50,10 @@ const CLOSED: f64 = 1e-9;
 /// Stretch of a body of small strain by its rotation, over the overlap, that is allowed.
 const SWELLS: f64 = 0.01;
 
+/// Deviation of straight cells from their curve, over the overlap, up to which an overlap is known:
+/// the deviation is known to half a percent.
+const CHORDS: f64 = 20.0;
+
 /// A node of a contact inside the body of the other side.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct OverlapNode {
@@ -147,6 +151,9 @@ pub(crate) fn relaxed(
         let help = "move a body so that the overlap is smaller than a cell, or use a finer mesh there";
         vec![Problem::new(format!("contact[{first}].overlap"), what, case.in_units(&why), help)]
     };
+    if let Some(problem) = hidden(case, model) {
+        return Err(vec![problem]);
+    }
     let quasi = quasi_static(case);
     let at = |share: f64| -> Result<Model, Vec<Problem>> {
         let mut model = build(&quasi, materials)?;
@@ -198,6 +205,28 @@ pub(crate) fn relaxed(
     let from = &before.y;
     y[..from.len()].copy_from_slice(from);
     Ok(Some(InitialState { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
+}
+
+/// Why an overlap is not known: it is much smaller than the deviation of straight cells from the
+/// curved side that they stand for.
+fn hidden(case: &Case, model: &Model) -> Option<Problem> {
+    let all = depths(model, &model.initial_position);
+    let relaxes = |k: &usize| case.contacts[*k].overlap == Overlap::Relax;
+    (0..all.len()).filter(relaxes).find_map(|k| {
+        let kinematics = &model.contacts[k].kinematics;
+        let deepest = all[k].iter().copied().fold(0.0, f64::max);
+        let chord = (0..all[k].len()).map(|node| kinematics.kept(node).abs()).fold(0.0, f64::max);
+        let is_hidden = deepest > CLOSED * model.scale && chord > CHORDS * deepest;
+        is_hidden.then(|| {
+            let [chord, deepest] = [chord, deepest].map(|length| quantity(length, &case.units.length));
+            Problem::new(
+                format!("contact[{k}].overlap"),
+                format!("the overlap of contact \"{}\" cannot be relaxed", case.contacts[k].name),
+                format!("straight cells deviate by {chord} from the curved side that they stand for, and the bodies overlap by {deepest}, which that hides"),
+                "use curved cells there, as T6, Hex27 or Tet10, or shorter ones: the deviation is h²/8R",
+            )
+        })
+    })
 }
 
 /// The energy of round-off: of displacements of 1e-10 L in the stiffest material.

@@ -82,6 +82,9 @@ fn chords_of_an_arc_are_told_from_an_interference() {
     let refused = Setup::new(&case(PRESS, &["contact.fit.overlap=refuse"])).start();
     let text = refused.err().unwrap().to_string();
     assert!(text.contains("of it behind straight cells") && text.contains("use curved cells"), "{text}");
+    let hidden =
+        Setup::new(&case(PRESS, &["body.shaft.mesh.radius=0.5001"])).start().err().unwrap().to_string();
+    assert!(hidden.contains("straight cells deviate") && hidden.contains("h²/8R"), "{hidden}");
     // Lamé's energy π a δ p; the meshes are softer, and smaller than the circles.
     let exact = std::f64::consts::PI * 0.5 * 6.66667e-4 * 1e8;
     for sides in [["shaft.arc", "hub.inner"], ["hub.inner", "shaft.arc"]] {
