@@ -19,9 +19,9 @@
 //! is held by the nodes that lie on it, up to h²/8r, the height of its arc over a chord of length h.
 //! Rows of the chords would constrain a body twice there, and a curved facet that follows the circle
 //! has no unique point closest to its centre. A narrow one passes between the nodes, or slides over
-//! them as over the teeth of a comb. A part has a row where r < 2h, so that contact is hardly wider
-//! than two facets; elsewhere h²/8r ≤ h/16. Where it meets a node, it is left to that node if the
-//! rows of both would be the same.
+//! them as over the teeth of a comb. A part has a row where r < h, so that contact is hardly wider
+//! than a facet; elsewhere h²/8r ≤ h/8. Where it meets a node, it is left to that node if the rows
+//! of both would be the same.
 
 use super::carrier::{Carrier, Local};
 use super::node_to_facet::{Detection, NodeToFacet};
@@ -37,8 +37,6 @@ use crate::rows::Rows;
 
 /// Cosine of the angle, 10°, up to which a facet counts as parallel to the obstacle beside a corner.
 const PARALLEL: f64 = 0.985;
-/// Radius of a part, over the length of a facet, from which on the nodes of the facet hold it.
-const WIDE: f64 = 2.0;
 /// Second derivative a of half the squared distance of a centre from a facet, over that from a
 /// straight one, below which the facet follows the part.
 const FOLLOWS: f64 = 0.5;
@@ -46,13 +44,13 @@ const FOLLOWS: f64 = 0.5;
 impl Tip {
     /// Whether the part can lie between the nodes of a facet of this length.
     fn is_narrow(&self, length: f64) -> bool {
-        self.size < WIDE * length
+        self.size < length
     }
 
     /// Depth to which nodes alone hold the part outside of a facet of this length; zero if they do
     /// not hold it.
     pub fn permitted(&self, length: f64) -> f64 {
-        if self.is_narrow(length) { 0.0 } else { length / (8.0 * WIDE) }
+        if self.is_narrow(length) { 0.0 } else { 0.125 * length }
     }
 }
 
