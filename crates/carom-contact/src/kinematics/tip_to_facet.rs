@@ -37,6 +37,9 @@ use crate::rows::Rows;
 
 /// Cosine of the angle, 10°, up to which a facet counts as parallel to the obstacle beside a corner.
 const PARALLEL: f64 = 0.985;
+/// Cosine of the angle, 3°, between two facets above which a part touches one of them: the rows of
+/// both would nearly be the same, and the gap differs by r (1 − cos 3°).
+const TURNED: f64 = 0.9986;
 /// Second derivative a of half the squared distance of a centre from a facet, over that from a
 /// straight one, below which the facet follows the part.
 const FOLLOWS: f64 = 0.5;
@@ -155,14 +158,16 @@ impl TipToFacet {
     fn beside(&self, pair: &Pair, y: &[f64], known: &[Pair], found: &mut Vec<Pair>) {
         let places = Places::new(y, 2);
         let center = places.at(self.nodes + pair.node);
+        let own = self.centers.gap_of(pair, places).at.normal;
         for facet in
             [false, true].into_iter().filter_map(|ahead| self.side.neighbour_of_side(pair.facet, ahead))
         {
             let is_same = |other: &Pair| other.node == pair.node && other.facet == facet;
             let Some(xi) = self.side.facet(facet).closest_point(places, center, 1.0) else { continue };
             let other = Pair::open(pair.node, facet, xi);
-            let height = self.centers.gap_of(&other, places).distance;
-            let enters = height > 0.0 && height + self.centers.slack(pair.node) < 0.0;
+            let gap = self.centers.gap_of(&other, places);
+            let turns = gap.at.normal.dot(&own) < TURNED;
+            let enters = turns && gap.distance > 0.0 && gap.distance + self.centers.slack(pair.node) < 0.0;
             if enters && !known.iter().chain(found.iter()).any(is_same) && self.acts(&other, y) {
                 found.push(other);
             }
