@@ -15,7 +15,7 @@ use crate::rows::Rows;
 
 /// Distance of a closest point from a joint, over the size of the facet, up to which it lies there:
 /// above round-off, and far below what a node slides in a step.
-pub(super) const AT_JOINT: f64 = 1e-6;
+pub(super) const AT_JOINT: f64 = 1e-7;
 
 /// Contact of nodes with single facets, of which that with joints is made.
 pub(super) trait OnFacets {

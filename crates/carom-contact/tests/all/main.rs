@@ -5,6 +5,7 @@
 mod derivatives;
 mod discrete_gradient;
 mod edges;
+mod joints;
 mod kinks;
 mod near_obstacle;
 mod obstacles;

@@ -1,0 +1,108 @@
+//! Contact over the joints of facets, whose gap is the mean of those to all of them: derivatives
+//! against differences, balance, and the symmetry that no single facet has.
+
+use carom_algebra::jacobian_error;
+use carom_contact::{
+    Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Pair, Pairing, Rows, Surface,
+};
+use carom_solid::FacetShape;
+
+/// Node 0 over the joint of two quadratic facets with a kink, and the pair there.
+fn in_the_plane() -> (Box<dyn Kinematics>, Vec<f64>, Pair) {
+    let y = [[0.012, 0.27], [1.0, 0.0], [0.0, 0.1], [-1.1, -0.03], [0.5, 0.08], [-0.5, 0.07]];
+    let surface = Surface::new(FacetShape::L3, &[vec![1, 2, 4], vec![2, 3, 5]], &[1.0; 2]);
+    let contact = NodeToFacet::new(vec![0], surface, Detection::ClosestPoint);
+    let pair = Pair { joint: Some(1), active: true, ..Pair::open(0, 0, 1.0) };
+    (Box::new(contact), y.as_flattened().to_vec(), pair)
+}
+
+/// Node 0 over the corner of four bilinear facets, and the pair there.
+fn in_space() -> (Box<dyn Kinematics>, Vec<f64>, Pair) {
+    let mut y = vec![[0.013, -0.02, 0.3]];
+    for k in 0..9 {
+        let [x, z] = [f64::from(k % 3) - 1.0, f64::from(k / 3) - 1.0];
+        y.push([x, z, 0.1 - 0.07 * x * x - 0.05 * z * z + 0.01 * x * z]);
+    }
+    let facets: Vec<Vec<usize>> = [1, 2, 4, 5].map(|k| vec![k, k + 1, k + 4, k + 3]).to_vec();
+    let contact = NodeToPatch::new(vec![0], Boundary::new(FacetShape::Q4, &facets, &[], 0));
+    let pair = Pair { joint: Some(2), active: true, eta: 1.0, ..Pair::open(0, 0, 1.0) };
+    (Box::new(contact), y.as_flattened().to_vec(), pair)
+}
+
+fn scenes() -> [(Box<dyn Kinematics>, Vec<f64>, Pair); 2] {
+    [in_the_plane(), in_space()]
+}
+
+/// The gap, and its gradient over all dofs.
+fn measured(contact: &dyn Kinematics, y: &[f64], mut pair: Pair) -> (f64, Vec<f64>, Pair) {
+    let mut rows = Rows::new(dimension(y));
+    contact.measure(&mut pair, y, &mut rows).unwrap();
+    let mut full = vec![0.0; y.len()];
+    rows.row(0).add_to(1.0, &mut full);
+    (rows.row(0).gap, full, pair)
+}
+
+#[test]
+fn derivatives_of_the_mean_agree_with_differences() {
+    for (contact, y, pair) in scenes() {
+        let (_, gradient, at) = measured(&*contact, &y, pair);
+        let error = jacobian_error(&y, 1e-3, |y| vec![measured(&*contact, y, pair).0], &gradient);
+        assert!(error < 1e-9, "gradient {error:e}");
+
+        let mut rows = Rows::new(dimension(&y));
+        contact.measure(&mut at.clone(), &y, &mut rows).unwrap();
+        let dofs: Vec<usize> = rows.row(0).entries().map(|(dof, _)| dof).collect();
+        let mut curvature = vec![0.0; dofs.len().pow(2)];
+        contact.curvature_into(&at, &y, &mut curvature);
+        let mut full = vec![0.0; y.len().pow(2)];
+        for (a, row) in dofs.iter().enumerate() {
+            for (b, column) in dofs.iter().enumerate() {
+                full[row * y.len() + column] = curvature[a * dofs.len() + b];
+            }
+        }
+        let error = jacobian_error(&y, 1e-3, |y| measured(&*contact, y, pair).1, &full);
+        assert!(error < 1e-8, "second derivative {error:e}");
+    }
+}
+
+fn dimension(y: &[f64]) -> usize {
+    if y.len() == 12 { 2 } else { 3 }
+}
+
+#[test]
+fn forces_over_a_joint_balance() {
+    for (contact, y, pair) in scenes() {
+        let (_, gradient, _) = measured(&*contact, &y, pair);
+        let d = dimension(&y);
+        for i in 0..d {
+            let sum: f64 = gradient.iter().skip(i).step_by(d).sum();
+            assert!(sum.abs() < 1e-14, "{sum:e}");
+            let j = (i + 1) % d;
+            let moment = |(y, f): (&[f64], &[f64])| y[i] * f[j] - y[j] * f[i];
+            let moment: f64 = y.chunks(d).zip(gradient.chunks(d)).map(moment).sum();
+            assert!(moment.abs() < 1e-14, "{moment:e}");
+        }
+    }
+}
+
+/// A roof of straight facets, symmetric about x = 0: the normal at its ridge is vertical, and a
+/// search finds the joint, from whichever side, until the node has slid off.
+#[test]
+fn the_normal_at_a_ridge_is_that_of_symmetry() {
+    let surface = Surface::new(FacetShape::L2, &[vec![1, 2], vec![2, 3]], &[1.0; 2]);
+    let contact = NodeToFacet::new(vec![0], surface, Detection::ClosestPoint);
+    let at = |x: f64, height: f64| vec![x, height, 1.0, 0.0, 0.0, 0.1, -1.0, 0.0];
+    for x in [0.0, 1e-12, -1e-12] {
+        let mut pairing = Pairing::default();
+        assert!(contact.search(&at(x, 0.2), &at(x, 0.09), &mut pairing, &mut Vec::new()));
+        let mut rows = Rows::new(2);
+        contact.measure(&mut pairing.pairs[0], &at(x, 0.09), &mut rows).unwrap();
+        let normal = rows.row(0).normal();
+        // The cosine of the slope, 0.1, of either facet.
+        assert!(normal[0].abs() < 1e-15 && (normal[1] - 1.01_f64.sqrt().recip()).abs() < 1e-12, "{normal:?}");
+        pairing.pairs[0].active = true;
+        contact.measure(&mut pairing.pairs[0], &at(0.01, 0.099), &mut rows).unwrap();
+        assert!(contact.search(&at(x, 0.2), &at(0.01, 0.099), &mut pairing, &mut Vec::new()));
+        assert_eq!((pairing.pairs[0].joint, pairing.pairs[0].facet), (None, 0));
+    }
+}
