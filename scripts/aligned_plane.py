@@ -269,7 +269,7 @@ def wheels():
         if rise == 0.0:
             claims.append({"judge": "steady", "body": "wheel", "axis": "x", "value": v, "limit": 1e-6, "until": 1.0})
         yield Setup(
-            f"a disc slides along a flat to a step {rise} high", [wheel, road], scheme, 0.25,
+            f"a disc slides along a flat to a step {rise} high", [wheel, road], scheme, 0.4 if rise else 0.25,
             contacts=[{"secondary": pair[0], "primary": pair[1]}], supports=[hold("road.side1")], claims=claims,
         )  # fmt: skip
 

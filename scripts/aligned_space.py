@@ -132,8 +132,9 @@ def space_corners():
         claims = [TOUCHES, FLIGHT, newton(cube, 3)]
         if rigid:
             claims += still("cube", parts, "xy", tol=1e-9)
-        elif not corner and symmetric(*parts):
-            # A cube on its edge is symmetric about both vertical planes, if its cells are.
+        elif what == "edge on a flat" and symmetric(*parts):
+            # A cube on its edge is symmetric about both vertical planes, if its cells are. On another edge
+            # its equilibrium is unstable: round-off of 1e-12 grows to 6e-3 while they touch.
             claims += still("cube", parts, "xy")
         supports = [] if rigid else [hold("base.bottom", dimension=3)]
         yield Setup(f"a cube falls with its {what}, sides {way}", parts, scheme, gap / v + 0.06, contacts=contacts, supports=supports, claims=claims)
@@ -178,7 +179,7 @@ def eighths():
         plane = {"plane": {"point": [0.0, 0.0, R], "normal": [0.0, 0.0, -1.0]}}
 
         def model(symmetry):
-            mesh = {"shape": "ball", "radius": R, "center": [0.0, 0.0, 0.0], "size": 0.13 * DEGREE[element], "symmetry": symmetry}
+            mesh = {"shape": "ball", "radius": R, "center": [0.0, 0.0, 0.0], "size": 0.12 * DEGREE[element], "symmetry": symmetry}
             if i >= 4:
                 cells = [max(1, n // 2) if a in symmetry else n for a in AXES]
                 mesh = {"shape": "box", "min": [-R] * 3, "max": [R] * 3, "cells": cells, "symmetry": symmetry}
