@@ -78,7 +78,7 @@ impl Boundary {
             for edge in 0..count {
                 edges.insert([nodes[edge], nodes[(edge + 1) % count]], EdgeOfFacet { facet, edge });
             }
-            for &node in nodes.iter() {
+            for &node in *nodes {
                 around.entry(node).or_default().push(facet);
             }
         }

@@ -520,7 +520,7 @@ impl OnFacets for NodeToPatch {
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);
-        if furthest < -AROUND_JOINT || furthest > REACH {
+        if !(-AROUND_JOINT..=REACH).contains(&furthest) {
             return None;
         }
         let mut joints = 0..2 * patch.corners() as u8;
