@@ -133,8 +133,9 @@ def space_corners():
         if rigid:
             claims += still("cube", parts, "xy", tol=1e-9)
         elif what == "edge on a flat" and symmetric(*parts):
-            # A cube on its edge is symmetric about both vertical planes, if its cells are. On another edge
-            # its equilibrium is unstable: round-off of 1e-12 grows to 6e-3 while they touch.
+            # A cube on its edge is symmetric about both vertical planes, if its cells are. On
+            # another edge its equilibrium is unstable: round-off of 1e-12 grows to 6e-3 while they
+            # touch.
             claims += still("cube", parts, "xy")
         supports = [] if rigid else [hold("base.bottom", dimension=3)]
         yield Setup(f"a cube falls with its {what}, sides {way}", parts, scheme, gap / v + 0.06, contacts=contacts, supports=supports, claims=claims)

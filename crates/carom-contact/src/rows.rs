@@ -147,8 +147,8 @@ impl Rows {
         }
     }
 
-    /// Adds the mean of every `stride`-th row of `rows` from `first` on, over all their nodes: those
-    /// of the first row in its order, then the others.
+    /// Adds the mean of every `stride`-th row of `rows` from `first` on, over all their nodes:
+    /// those of the first row in its order, then the others.
     pub(crate) fn push_mean(&mut self, rows: &Self, first: usize, stride: usize) {
         let share = 1.0 / (first..rows.len()).step_by(stride).len() as f64;
         let d = self.dimension;

@@ -136,7 +136,8 @@ impl NodeToFacet {
         }
     }
 
-    /// Whether a node inside the primary is as deep behind the next facet as behind the closest one.
+    /// Whether a node inside the primary is as deep behind the next facet as behind the closest
+    /// one.
     fn is_between(&self, node: usize, closest: &Closest, y: Places) -> bool {
         let next = self.primary.neighbour(closest.facet, closest.xi > 0.0);
         next.is_some_and(|next| {

@@ -15,8 +15,8 @@
 //! or have a node in common with one that does on the same smooth part, are excluded by this or as
 //! its own.
 //!
-//! A slit that is closed turns by −180° at its tip, and a sharp corner by nearly +180°. Which of both
-//! a joint is follows from the angle of the body at its node in the reference configuration.
+//! A slit that is closed turns by −180° at its tip, and a sharp corner by nearly +180°. Which of
+//! both a joint is follows from the angle of the body at its node in the reference configuration.
 //!
 //! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
 //! without a common cell always can.
@@ -197,8 +197,8 @@ fn nearest_to(other: f64, angle: f64) -> f64 {
     angle + 2.0 * PI * ((other - angle) / (2.0 * PI)).round()
 }
 
-/// Turn of the tangent at the joint after a facet: π less the angle of the body there. A closed slit
-/// and a sharp corner differ in it by a whole turn, and in what a node sees of its boundary.
+/// Turn of the tangent at the joint after a facet: π less the angle of the body there. A closed
+/// slit and a sharp corner differ in it by a whole turn, and in what a node sees of its boundary.
 fn joint(surface: &Surface, facet: usize, y: Places) -> f64 {
     let Some(next) = surface.neighbour(facet, true) else { return 0.0 };
     let kink = surface.kink(facet, next, y);

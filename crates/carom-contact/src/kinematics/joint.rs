@@ -7,8 +7,8 @@
 //! ```
 //!
 //! so that a symmetric contact stays symmetric, and neither numbering nor a rigid motion matters.
-//! Which pairs lie on a joint is decided at the start of a solve. One that has slid off it by the end
-//! goes on with the facet where it lies: over a hollow joint the mean would let it sink.
+//! Which pairs lie on a joint is decided at the start of a solve. One that has slid off it by the
+//! end goes on with the facet where it lies: over a hollow joint the mean would let it sink.
 
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
@@ -29,8 +29,8 @@ pub(super) trait OnFacets {
     /// Size of a facet.
     fn size(&self, facet: usize, y: &[f64]) -> f64;
 
-    /// Distance of the node of a pair from a joint of its facet, along the surface and over the size
-    /// of the facet.
+    /// Distance of the node of a pair from a joint of its facet, along the surface and over the
+    /// size of the facet.
     fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64;
 
     /// Whether the facets of the side at a joint of a facet form a smooth surface, but for small
@@ -53,8 +53,8 @@ pub(super) trait OnFacets {
         }
     }
 
-    /// Takes active pairs off joints where a facet's gap differs from the mean by more than round-off
-    /// in positions: the node has slid away. Returns their nodes.
+    /// Takes active pairs off joints where a facet's gap differs from the mean by more than
+    /// round-off in positions: the node has slid away. Returns their nodes.
     fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> Vec<usize> {
         let mut left = Vec::new();
         let mut gaps = Rows::new(self.dimension());
@@ -146,8 +146,8 @@ pub(super) trait OnFacets {
         });
     }
 
-    /// Overwrites the first entries of `mean` with the mean of the matrices of pairs, over the nodes
-    /// of their mean row ([`Rows::push_mean`]).
+    /// Overwrites the first entries of `mean` with the mean of the matrices of pairs, over the
+    /// nodes of their mean row ([`Rows::push_mean`]).
     fn mean_matrix(&self, parts: &[Pair], mean: &mut [f64], matrix: impl Fn(&Pair, &mut [f64])) {
         let dimension = self.dimension();
         let nodes: Vec<Vec<usize>> = parts.iter().map(|part| self.nodes_with(part)).collect();

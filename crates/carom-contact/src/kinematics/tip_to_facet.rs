@@ -6,22 +6,22 @@
 //! c = Σ w_a y_a        g = distance of c from the facet − r        ∂g/∂y = (−φᵏ n; w_a n)
 //! ```
 //!
-//! and the gap is that of a node at c (`gap.rs`). The slip is that of the point of the facet closest
-//! to c relative to the point p of the obstacle at the same place, which has other weights, those
-//! of p: its rows (−φᵏ t; w_a(p) t) have no part in a rigid motion of both. With
-//! ξ' = ∂ξ/∂y, t' = n ⊗ D, D = ((φᵏ)' n + κ ξ')/J, and γ = −(−φᵏ; w_a),
+//! and the gap is that of a node at c (`gap.rs`). The slip is that of the point of the facet
+//! closest to c relative to the point p of the obstacle at the same place, which has other weights,
+//! those of p: its rows (−φᵏ t; w_a(p) t) have no part in a rigid motion of both. With ξ' = ∂ξ/∂y,
+//! t' = n ⊗ D, D = ((φᵏ)' n + κ ξ')/J, and γ = −(−φᵏ; w_a),
 //!
 //! ```text
 //! ∂(−φᵏ t) = −t (φᵏ)' ξ' − φᵏ n D        ∂(w_a t) = t (Ω_a γ + J (Ω_a·t) ξ') + w_a n D
 //! ```
 //!
 //! The nodes of the side are held by the obstacle themselves (`node_to_obstacle.rs`). A wide circle
-//! is held by the nodes that lie on it, up to h²/8r, the height of its arc over a chord of length h.
-//! Rows of the chords would constrain a body twice there, and a curved facet that follows the circle
-//! has no unique point closest to its centre. A narrow one passes between the nodes, or slides over
-//! them as over the teeth of a comb. A part has a row where r < h, so that contact is hardly wider
-//! than a facet; elsewhere h²/8r ≤ h/8. Where it meets a node, it is left to that node if the rows
-//! of both would be the same.
+//! is held by the nodes that lie on it, up to h²/8r, the height of its arc over a chord of length
+//! h. Rows of the chords would constrain a body twice there, and a curved facet that follows the
+//! circle has no unique point closest to its centre. A narrow one passes between the nodes, or
+//! slides over them as over the teeth of a comb. A part has a row where r < h, so that contact is
+//! hardly wider than a facet; elsewhere h²/8r ≤ h/8. Where it meets a node, it is left to that node
+//! if the rows of both would be the same.
 
 use super::carrier::{Carrier, Local};
 use super::node_to_facet::{Detection, NodeToFacet};
@@ -35,7 +35,8 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// Cosine of the angle, 10°, up to which a facet counts as parallel to the obstacle beside a corner.
+/// Cosine of the angle, 10°, up to which a facet counts as parallel to the obstacle beside a
+/// corner.
 const PARALLEL: f64 = 0.985;
 /// Cosine of the angle, 3°, between two facets above which a part touches one of them: the rows of
 /// both would nearly be the same, and the gap differs by r (1 − cos 3°).
@@ -75,8 +76,8 @@ pub struct TipToFacet {
 }
 
 impl TipToFacet {
-    /// Contact of the convex parts of an obstacle with a side; `reference`: the reference positions,
-    /// flat over all nodes.
+    /// Contact of the convex parts of an obstacle with a side; `reference`: the reference
+    /// positions, flat over all nodes.
     pub fn new(obstacle: &NodeToObstacle, side: Surface, reference: &[f64]) -> Self {
         let tips = obstacle.shape.tips();
         let nodes = reference.len() / 2;
@@ -153,8 +154,8 @@ impl TipToFacet {
         faces && !(meets_node && (is_parallel || tip.radius > 0.0))
     }
 
-    /// Adds pairs of a round part with the facets next to that of a pair that it penetrates too: near
-    /// a concave joint it touches both before its centre faces the joint.
+    /// Adds pairs of a round part with the facets next to that of a pair that it penetrates too:
+    /// near a concave joint it touches both before its centre faces the joint.
     fn beside(&self, pair: &Pair, y: &[f64], known: &[Pair], found: &mut Vec<Pair>) {
         let places = Places::new(y, 2);
         let center = places.at(self.nodes + pair.node);
@@ -174,8 +175,8 @@ impl TipToFacet {
         }
     }
 
-    /// Adds a row over the nodes of a facet and the carrying nodes, whose gradients are multiples of
-    /// one vector.
+    /// Adds a row over the nodes of a facet and the carrying nodes, whose gradients are multiples
+    /// of one vector.
     fn push(
         &self,
         gap: f64,
@@ -240,8 +241,8 @@ impl Kinematics for TipToFacet {
         self.side.facets()
     }
 
-    /// Signed distance to the whole boundary, of which the side is a part; infinite where the nodes of
-    /// the nearest facet hold the part.
+    /// Signed distance to the whole boundary, of which the side is a part; infinite where the nodes
+    /// of the nearest facet hold the part.
     fn signed_distance(&self, tip: usize, y: &[f64]) -> Option<f64> {
         let all = self.with_centers(y);
         let center = Places::new(&all, 2).at(self.nodes + tip);
@@ -310,7 +311,8 @@ impl Kinematics for TipToFacet {
         let own = 2 * (1 + count);
         let mut of_center = vec![0.0; own * own];
         self.centers.curvature_into(pair, &self.with_centers(y), &mut of_center);
-        // Every node moves one of the nodes of the gap, with a weight: that of the facet or the centre.
+        // Every node moves one of the nodes of the gap, with a weight: that of the facet or the
+        // centre.
         let facet = (1..=count).map(|node| (node, 1.0));
         let nodes: Vec<(usize, f64)> =
             facet.chain(self.weights(pair.node).into_iter().map(|weight| (0, weight))).collect();

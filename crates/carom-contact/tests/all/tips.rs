@@ -8,7 +8,8 @@ use carom_contact::{
 use carom_solid::FacetShape;
 
 /// A wedge with the corner (0.2, 0.3) above, and a circle, fixed, moving along with a node and on a
-/// simplex, over a facet, straight or curved: nodes 0, 1, … of the facet, then those of the carrier.
+/// simplex, over a facet, straight or curved: nodes 0, 1, … of the facet, then those of the
+/// carrier.
 fn scenes() -> Vec<(TipToFacet, Vec<f64>)> {
     let wedge = [[-0.8, 1.3], [0.2, 0.3], [1.2, 1.3]];
     let mut scenes = Vec::new();
@@ -141,7 +142,7 @@ fn a_part_acts_between_nodes_and_where_its_row_is_not_that_of_a_node() {
     for x in [0.3, -0.5, 0.01] {
         assert!(acts(&wedge, 0.0, x) && acts(&edge, 0.0, x) && acts(&wedge, 0.1, x), "{x}");
     }
-    // At a node: the corner's plane is that of a facet, the node's that of a flank of the wedge, but
-    // that of the flat side of the edge, and that of the arc.
+    // At a node: the corner's plane is that of a facet, the node's that of a flank of the wedge,
+    // but that of the flat side of the edge, and that of the arc.
     assert!(acts(&wedge, 0.0, 0.0) && !acts(&edge, 0.0, 0.0) && !acts(&wedge, 0.02, 0.0));
 }

@@ -361,8 +361,8 @@ impl Penetration {
     pub fn inside(&mut self, model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
         self.begin(model, y);
         for way in &mut self.ways {
-            // Where nodes keep depths, points between those of an edge deviate by as much as facets do
-            // from what they stand for: they are judged as in every step.
+            // Where nodes keep depths, points between those of an edge deviate by as much as facets
+            // do from what they stand for: they are judged as in every step.
             let keeps = way.contact.is_some_and(|contact| keeps(&model.contacts[contact]));
             let exact = way.nodes.iter_mut().filter(|watched| !keeps || watched.between.is_empty());
             exact.for_each(|watched| watched.share = 0.0);

@@ -1,11 +1,11 @@
 //! How deep the round parts of rigid obstacles lie in bodies: the nodes of a body can pass a
 //! circle, a sphere or a corner on both sides of it.
 //!
-//! A centre at a distance d from the boundary of a body, negative inside, with the radius r lies
-//! r − d deep. Nothing is measured before the two can have met. Where the contact holds the parts
-//! (`tip_to_facet.rs` of `carom-contact`), the depth counts as penetration if the part is in contact
-//! or deeper than nodes alone permit: where they lie on a wide circle, the chords between them are
-//! inside.
+//! A centre at a distance d from the boundary of a body, negative inside, with the radius r lies r
+//! − d deep. Nothing is measured before the two can have met. Where the contact holds the parts
+//! (`tip_to_facet.rs` of `carom-contact`), the depth counts as penetration if the part is in
+//! contact or deeper than nodes alone permit: where they lie on a wide circle, the chords between
+//! them are inside.
 
 use std::sync::Arc;
 

@@ -71,7 +71,8 @@ pub(crate) fn take(model: &Model, state: &mut State, energy: f64) {
 }
 
 /// Returns energy where contact ends: `released` are the contacts and indices of secondary nodes of
-/// pairs that opened in the step. The jump of kinetic energy is recorded as contact work and returned.
+/// pairs that opened in the step. The jump of kinetic energy is recorded as contact work and
+/// returned.
 pub(crate) fn separate(
     model: &Model,
     state: &mut State,

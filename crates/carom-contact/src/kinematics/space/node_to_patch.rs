@@ -44,8 +44,8 @@ const HAND_OVER: f64 = 0.02;
 /// Distance past an edge, relative to the height of the facet, beyond which a pair is handed back
 /// to the facet that it came from before Newton's method has converged.
 const HAND_BACK: f64 = 0.1;
-/// Distance inside an edge, relative to the height of the facet, up to which a node may lie over it:
-/// the foot of a node that is not on the surface is beside a joint with a kink.
+/// Distance inside an edge, relative to the height of the facet, up to which a node may lie over
+/// it: the foot of a node that is not on the surface is beside a joint with a kink.
 const AROUND_JOINT: f64 = 0.02;
 /// Distance past an edge, relative to the height of the facet, above which a closest point is past
 /// it.
