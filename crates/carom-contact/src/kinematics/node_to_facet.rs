@@ -506,7 +506,9 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        if self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        // The row of a round part is made of that with one facet (`tip_to_facet.rs`).
+        let has_rows_of_one = self.is_frozen() || !self.radii.is_empty();
+        if has_rows_of_one || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;
