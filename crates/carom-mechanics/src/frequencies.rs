@@ -139,7 +139,8 @@ fn power(model: &Model, system: &mut Direct, mut x: Vec<f64>) -> Option<f64> {
 
 /// Solves with the last factor for a right-hand side on the free dofs.
 fn solved(model: &Model, system: &mut Direct, right: &[f64]) -> Option<Vec<f64>> {
-    let (mut forces, mut answer) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
+    let mut forces = vec![0.0; model.dofs()];
+    let mut answer = vec![0.0; model.dofs()];
     model.free.iter().zip(right).for_each(|(dof, f)| forces[*dof] = *f);
     system.solve(model, [&forces, &[]], &mut answer, &mut Vec::new()).ok()?;
     Some(model.free.iter().map(|dof| answer[*dof]).collect())

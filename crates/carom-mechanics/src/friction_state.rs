@@ -76,8 +76,8 @@ fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2
         (along(first), along(second))
     });
     let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let (across, along) =
-        (sum(&from_x, &to_y) - sum(&from_y, &to_x), sum(&from_x, &to_x) + sum(&from_y, &to_y));
+    let across = sum(&from_x, &to_y) - sum(&from_y, &to_x);
+    let along = sum(&from_x, &to_x) + sum(&from_y, &to_y);
     let (sin, cos) = across.atan2(along).sin_cos();
     pair.tangential.tangents = [
         std::array::from_fn(|i| cos * first[i] + sin * second[i]),

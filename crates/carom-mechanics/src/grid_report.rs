@@ -150,7 +150,8 @@ impl GridReport {
 
     /// Forgets the steps since an earlier report, but not the work on them.
     pub(crate) fn return_to(&mut self, earlier: Self) {
-        let (newton, rejected) = (self.newton, self.rejected);
+        let newton = self.newton;
+        let rejected = self.rejected;
         let later = self.events.split_off(earlier.events.len());
         *self = Self { newton, rejected, ..earlier };
         let rejections = |event: &LogEvent| matches!(event, LogEvent::Rejected { .. });

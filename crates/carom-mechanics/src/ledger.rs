@@ -98,7 +98,8 @@ pub(crate) fn work_of_loads(equations: &Equations, solved: &Evaluation) -> f64 {
     if model.loads.is_empty() {
         return 0.0;
     }
-    let (now, before) = (stage.weights.external, stage.before.external);
+    let now = stage.weights.external;
+    let before = stage.before.external;
     let forces = solved.forces.loads.iter().zip(&state.f_external);
     let mean = forces.map(|(load, old)| now * load + before * old);
     solved.at.increment.iter().zip(mean).map(|(moved, force)| moved * force).sum()
@@ -277,7 +278,8 @@ fn change_of_reactions(model: &Model, state: &State, next: &State, increment: &[
         balance_into(model, state, &a, &mut forces);
         forces
     };
-    let (before, now) = (reactions(state), reactions(next));
+    let before = reactions(state);
+    let now = reactions(next);
     model.motions.dofs().map(|i| increment[i] * (now[i] - before[i])).sum()
 }
 

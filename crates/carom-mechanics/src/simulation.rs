@@ -214,7 +214,8 @@ impl Simulation {
         let end = self.grid.time(step) + self.grid.length(step + 1);
         let state = match (self.grid_step(false, report, watch), before) {
             (Err(stopped), Some(before)) if stopped.is_of_the_method(end) => {
-                let (time, dt) = (self.state.time, self.grid.length(step + 1));
+                let time = self.state.time;
+                let dt = self.grid.length(step + 1);
                 report.return_to(before);
                 report.fall_back(time, dt, stopped.to_string());
                 self.grid_step(true, report, watch)?
@@ -232,12 +233,15 @@ impl Simulation {
         report: &mut GridReport,
         watch: &mut Watch,
     ) -> Result<State, Stopped> {
-        let (start, length) = (self.grid.time(self.state.step), self.grid.length(self.state.step + 1));
+        let start = self.grid.time(self.state.step);
+        let length = self.grid.length(self.state.step + 1);
         // The state after the substeps so far; none before the first.
         let mut reached: Option<State> = None;
         let level = if falls_back { 0 } else { self.state.bisection.level() };
         let mut progress = Progress { level, done: 0 };
-        let (mut stored, mut bisected, before) = (None, false, report.rejected);
+        let mut stored = None;
+        let mut bisected = false;
+        let before = report.rejected;
         let end = start + length;
         let bisections =
             if falls_back { self.bisections.min(FEW) } else { self.state.bisection.limit(self.bisections) };
@@ -251,8 +255,10 @@ impl Simulation {
             let stepper = self.fallback.as_ref().filter(|_| falls_back).unwrap_or(&self.stepper);
             let stepped = stepper.step(&self.model, from, dt, to, &mut self.work);
             let stepped = stepped.and_then(|step| {
-                let (state, Workspace { timings, valid_cells, .. }) = (step.state(), &mut self.work);
-                let (times, positions) = ([from.time, state.time], [&from.y[..], &state.y[..]]);
+                let state = step.state();
+                let Workspace { timings, valid_cells, .. } = &mut self.work;
+                let times = [from.time, state.time];
+                let positions = [&from.y[..], &state.y[..]];
                 let check = || valid_cells.check_paths(&self.model, times, positions);
                 timed(&mut timings.assembly, check)?;
                 timed(&mut timings.contact, || nothing_passed(&self.model, &from.y, &state.y))?;
@@ -317,7 +323,8 @@ impl Simulation {
     fn watch(&self, state: &State) -> Result<(), Stopped> {
         let Some(share) = self.grid.guard else { return Ok(()) };
         let ledger = &state.ledger;
-        let (created, scale) = (ledger.created(), ledger.scale());
+        let created = ledger.created();
+        let scale = ledger.scale();
         if ledger.surely_created() > share * scale + self.grid.floor {
             return Err(Stopped::EnergyGuard { time: state.time, dt: self.grid.dt, created, share, scale });
         }

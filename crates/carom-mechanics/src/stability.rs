@@ -101,9 +101,13 @@ fn largest_of_cells(model: &Model) -> Option<f64> {
     let mut largest = 0.0_f64;
     for part in &model.parts {
         let mesh = part.body.mesh();
-        let (n, d, dofs) = (mesh.element.nodes(), model.dimension, mesh.element.dofs());
-        let (mut work, mut mass) = (vec![0.0; n * n], vec![0.0; n]);
-        let (mut force, mut tangent) = (vec![0.0; dofs], vec![0.0; dofs * dofs]);
+        let n = mesh.element.nodes();
+        let d = model.dimension;
+        let dofs = mesh.element.dofs();
+        let mut work = vec![0.0; n * n];
+        let mut mass = vec![0.0; n];
+        let mut force = vec![0.0; dofs];
+        let mut tangent = vec![0.0; dofs * dofs];
         for cell in 0..mesh.cell_count() {
             cell_lumped_mass(&*part.body, cell, &mut work, &mut mass);
             part.body.cell_tangent(cell, part.of(&model.reference), &mut force, &mut tangent).ok()?;

@@ -59,7 +59,8 @@ pub(crate) fn start(
     before: Option<InitialState>,
     system: &mut System,
 ) -> Result<State, Rejected> {
-    let (dofs, has_inertia) = (model.dofs(), inertia != Inertia::None);
+    let dofs = model.dofs();
+    let has_inertia = inertia != Inertia::None;
     let contacts = model.contacts.len();
     let InitialState { y, v, mut pairs } = before.unwrap_or_else(|| InitialState {
         y: model.initial_position.clone(),

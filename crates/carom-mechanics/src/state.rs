@@ -339,7 +339,8 @@ impl State {
             }
             let facets = |pair: &Pair| contact.kinematics.facets(pair.node);
             if let Some(pair) = pairs.iter().find(|pair| pair.facet >= facets(pair)) {
-                let (facet, facets) = (pair.facet, facets(pair));
+                let facet = pair.facet;
+                let facets = facets(pair);
                 let what = format!(
                     "facet {facet} of the primary of contact \"{}\", which has {facets}",
                     contact.name

@@ -132,7 +132,8 @@ pub(crate) fn decide(
 
 /// The energy that a step created and what it may create, if it is less.
 fn beyond(step: &Accepted, from: &State, share: f64, floor: f64) -> Option<(f64, f64)> {
-    let (before, now) = (&from.ledger, &step.state().ledger);
+    let before = &from.ledger;
+    let now = &step.state().ledger;
     let so_far = before.surely_created().max(0.0);
     let created = now.surely_created() - so_far;
     let allowed = STEP * (share * now.scale() + floor - so_far).max(0.0);

@@ -38,7 +38,8 @@ pub(crate) fn contact(parts: &[BodyInstance], secondary: (usize, &str), primary:
         parts[k].body.mesh().sides[side].iter().map(of).collect()
     };
     let shape = |k: usize| parts[k].body.mesh().element.facet_shape();
-    let (secondary_nodes, target) = (nodes(&parts[secondary.0], secondary.1), facets(primary));
+    let secondary_nodes = nodes(&parts[secondary.0], secondary.1);
+    let target = facets(primary);
     let mut surface = [&secondary_nodes[..], &nodes(&parts[primary.0], primary.1)].concat();
     surface.sort_unstable();
     let kinematics: Box<dyn Kinematics> = if parts[0].body.mesh().dimension() == 3 {
@@ -116,7 +117,8 @@ pub(crate) fn model(
 /// The model with the nodes of a side of one body as the nearest points of a side of another.
 pub(crate) fn tied(mut model: Model, secondary: (usize, &str), primary: (usize, &str)) -> Model {
     let part = &model.parts[primary.0];
-    let (mesh, d) = (part.body.mesh(), model.dimension);
+    let mesh = part.body.mesh();
+    let d = model.dimension;
     let place = |node: usize| -> [f64; 3] {
         std::array::from_fn(|i| if i < d { model.reference[node * d + i] } else { 0.0 })
     };

@@ -91,7 +91,9 @@ struct Determinant<const D: usize> {
 impl<const D: usize> Determinant<D> {
     fn of_simplex(k: usize, nodes: &[Vector<D>]) -> Self {
         let degree = D * (k - 1);
-        let (points, parts, whole) = (exponents::<D>(k), exponents::<D>(k - 1), exponents::<D>(degree));
+        let points = exponents::<D>(k);
+        let parts = exponents::<D>(k - 1);
+        let whole = exponents::<D>(degree);
         let plus = |e: &Exponents, corner: usize| {
             let mut e = *e;
             e[corner] += 1;
@@ -121,7 +123,8 @@ impl<const D: usize> Determinant<D> {
 
     fn of_box(k: usize) -> Self {
         let degree = D * k - 1;
-        let (points, whole) = (lattice::<D>(&[k; D]), lattice::<D>(&[degree; D]));
+        let points = lattice::<D>(&[k; D]);
+        let whole = lattice::<D>(&[degree; D]);
         let parts: [Vec<Exponents>; D] = std::array::from_fn(|i| {
             let mut degrees = [k; D];
             degrees[i] = k - 1;

@@ -69,7 +69,9 @@ impl<P: Piece + Clone> Earliest<P> {
     }
 
     fn push(&mut self, piece: P) {
-        let (theta, level, place) = (piece.theta(), piece.level(), piece.place());
+        let theta = piece.theta();
+        let level = piece.level();
+        let place = piece.place();
         let at = if let Some(at) = self.free.pop() {
             self.pieces[at] = piece;
             at

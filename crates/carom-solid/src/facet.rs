@@ -156,7 +156,8 @@ impl FacetShape {
     /// Nodes of the edge from a corner of a surface to the next one, in the order of a line's, and
     /// how many there are.
     pub fn edge(self, edge: usize) -> ([usize; 4], usize) {
-        let (corners, inner) = (self.corners(), self.degree() - 1);
+        let corners = self.corners();
+        let inner = self.degree() - 1;
         let node = |k: usize| match k {
             0 => edge,
             1 => (edge + 1) % corners,
@@ -211,7 +212,8 @@ impl FacetShape {
 }
 
 fn surface<const N: usize, S: Shape<2, N>>(xi: [f64; 2]) -> FacetFunctions {
-    let (own, gradients) = (S::values(&Vector(xi)), S::gradients(&Vector(xi)));
+    let own = S::values(&Vector(xi));
+    let gradients = S::gradients(&Vector(xi));
     let mut functions = FacetFunctions { values: [0.0; NODES], slopes: [[0.0; NODES]; 2] };
     for a in 0..N {
         functions.values[a] = own[a];

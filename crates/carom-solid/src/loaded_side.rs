@@ -37,7 +37,8 @@ impl LoadedSide {
     /// Points of the facets of a side. `thickness` is the area of the cross-section in dimension 1;
     /// it is not used in space.
     pub fn new(mesh: &Mesh, facets: &[Facet], first_node: usize, thickness: f64) -> Self {
-        let (shape, dimension) = (mesh.element.facet_shape(), mesh.dimension());
+        let shape = mesh.element.facet_shape();
+        let dimension = mesh.dimension();
         let thickness = if dimension < 3 { thickness } else { 1.0 };
         // A curved facet's |X′| is not a polynomial, nor is the formula of a load: twice the degree
         // of the products of shape functions, where there are such rules.
@@ -105,7 +106,8 @@ impl LoadedSide {
     /// the positions in space only.
     pub fn facet_tangent(&self, facet: usize, pressure: &[f64], y: &[f64], tangent: &mut [f64]) {
         tangent.fill(0.0);
-        let (n, d) = (self.facets[facet].len(), self.dimension);
+        let n = self.facets[facet].len();
+        let d = self.dimension;
         let count = self.points.len() / self.facets.len();
         let own = facet * count..(facet + 1) * count;
         for (point, pressure) in self.points[own.clone()].iter().zip(&pressure[own]) {

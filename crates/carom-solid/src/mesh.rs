@@ -215,7 +215,8 @@ impl Mesh {
             return 1.0;
         }
         // The outward direction points away from the other nodes of the end's cell.
-        let (end, cell) = (self.nodes[facet.nodes[0]][0], self.cell(facet.cell));
+        let end = self.nodes[facet.nodes[0]][0];
+        let cell = self.cell(facet.cell);
         (end - cell.iter().map(|&n| self.nodes[n][0]).sum::<f64>() / cell.len() as f64).signum()
     }
 
@@ -242,7 +243,8 @@ impl Mesh {
             return skin;
         }
         let starts: BTreeMap<usize, usize> = skin.iter().enumerate().map(|(k, f)| (f.nodes[0], k)).collect();
-        let (mut order, mut taken) = (Vec::with_capacity(skin.len()), vec![false; skin.len()]);
+        let mut order = Vec::with_capacity(skin.len());
+        let mut taken = vec![false; skin.len()];
         for first in 0..skin.len() {
             let mut next = Some(first);
             while let Some(k) = next.filter(|&k| !std::mem::replace(&mut taken[k], true)) {
@@ -267,7 +269,8 @@ impl Mesh {
             let nodes = self.cell(cell);
             for pair in nodes.windows(2) {
                 let [a, b] = [pair[0], pair[1]].map(|node| root(&of, node));
-                let (low, high) = (a.min(b), a.max(b));
+                let low = a.min(b);
+                let high = a.max(b);
                 of[high] = low;
                 // Short chains: nodes point to the smallest node known.
                 pair.iter().for_each(|&node| of[node] = low);

@@ -169,7 +169,8 @@ fn times<const D: usize>(b: &Mats<D>, a: &Mat<D>) -> Mats<D> {
 #[inline(always)]
 fn pulled_back<const D: usize>(moduli: &[[Mats<D>; D]; D], a: &Mat<D>) -> [[Mats<D>; D]; D] {
     let zero = [[[[[0.0; LANES]; D]; D]; D]; D];
-    let (mut half, mut whole) = (zero, zero);
+    let mut half = zero;
+    let mut whole = zero;
     for m in 0..D {
         for j in 0..D {
             for l in 0..D {

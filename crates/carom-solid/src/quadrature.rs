@@ -48,7 +48,8 @@ pub fn line(degree: usize) -> Rule<1> {
 
 /// Pₙ(x) and P′ₙ(x) by the three-term recurrence, |x| < 1.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
-    let (mut before, mut p) = (1.0, x);
+    let mut before = 1.0;
+    let mut p = x;
     for k in 2..=n {
         let k = k as f64;
         (before, p) = (p, ((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k);
@@ -195,7 +196,9 @@ fn collapsed(degree: usize) -> Rule<3> {
         let rule = line(degree);
         rule.iter().map(|(x, weight)| (0.5 * (1.0 + x[0]), 0.5 * weight)).collect::<Vec<_>>()
     };
-    let (along_u, along_v, along_w) = (on_unit(degree), on_unit(degree + 1), on_unit(degree + 2));
+    let along_u = on_unit(degree);
+    let along_v = on_unit(degree + 1);
+    let along_w = on_unit(degree + 2);
     let mut rule = Rule { points: Vec::new(), weights: Vec::new() };
     for &(w, weight_w) in &along_w {
         for &(v, weight_v) in &along_v {

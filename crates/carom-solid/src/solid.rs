@@ -224,8 +224,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// y − X at the nodes of a cell.
     #[inline(always)]
     fn displacements(&self, cell: usize, y: &[f64]) -> [Vector<D>; N] {
-        let (nodes, places, y) =
-            (self.nodes(cell), self.mesh.nodes.of_dimension::<D>(), y.as_chunks::<D>().0);
+        let nodes = self.nodes(cell);
+        let places = self.mesh.nodes.of_dimension::<D>();
+        let y = y.as_chunks::<D>().0;
         let mut u = [Vector::ZERO; N];
         for a in 0..N {
             u[a] = Vector(y[nodes[a]]) - Vector(places[nodes[a]]);

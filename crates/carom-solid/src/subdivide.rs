@@ -53,7 +53,8 @@ impl Mesh {
 }
 
 fn triangles<const N: usize, S: Shape<2, N>>(mesh: &Mesh, parts: usize) -> Mesh {
-    let (degree, count) = (S::DEGREE, S::DEGREE * parts);
+    let degree = S::DEGREE;
+    let count = S::DEGREE * parts;
     let steps = lattice::<2, N, S>();
     // Upright triangles row by row, each followed by the inverted one on its right.
     let children: Vec<([usize; 2], bool)> = (0..parts)

@@ -91,8 +91,10 @@ impl<const D: usize, const N: usize> Validity<D, N> {
         }
         let (differences, error) = self.differences_of(nodes, nodes);
         // A comparison with a NaN certifies nothing.
-        let (mut least, mut certified) = (f64::INFINITY, true);
-        let (mut sum, mut current) = (0.0, 0);
+        let mut least = f64::INFINITY;
+        let mut certified = true;
+        let mut sum = 0.0;
+        let mut current = 0;
         for term in &self.tables.terms {
             if term.coefficient != current {
                 certified &= sum > error;
@@ -128,7 +130,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
     /// less than 2ᴰ, because m ≤ 0.45 max|Eᵢⱼ|.
     #[inline(always)]
     pub(crate) fn margin_of_edges<T: Real>(&self, edges: &Mat<D, T>) -> Option<T> {
-        let (mut largest, mut sum) = (T::ZERO, T::ZERO);
+        let mut largest = T::ZERO;
+        let mut sum = T::ZERO;
         let cofactors = edges.cofactor();
         for i in 0..D {
             for j in 0..D {
@@ -136,7 +139,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
                 sum = sum + cofactors.0[i][j].map(f64::abs);
             }
         }
-        let (det, error) = (edges.det(), self.round_off(largest));
+        let det = edges.det();
+        let error = self.round_off(largest);
         let is_lost = (det - error).find(|free| free <= 0.0 || free.is_nan()).is_some();
         let free = (det - T::of(FAR) * error).max(T::ZERO);
         (self.is_affine && !is_lost).then(|| T::of(0.449) * free / sum)
@@ -240,7 +244,8 @@ impl<const D: usize, const N: usize> Validity<D, N> {
 
     /// Halves in θ or in the direction with the larger changes; `None` where the loss is located.
     fn halves(&self, domain: &Subdomain<D>) -> Option<[Subdomain<D>; 2]> {
-        let (first, last) = (&domain.rows[0], &domain.rows[domain.rows.len() - 1]);
+        let first = &domain.rows[0];
+        let last = &domain.rows[domain.rows.len() - 1];
         // A NaN is a loss.
         let positive = |row: &[f64]| self.tables.corners.iter().all(|c| row[c.coefficient] > domain.error);
         let lost = |row: &[f64]| !positive(row);

@@ -164,7 +164,8 @@ impl Penetration {
     /// Penetration at the state, and the first node beyond its limit with contact and body.
     fn measure(&mut self, model: &Model, state: &State) -> (Depths, Option<(usize, usize, Inside)>) {
         self.begin(model, &state.y);
-        let (mut deepest, mut beyond) = (Depths::default(), None);
+        let mut deepest = Depths::default();
+        let mut beyond = None;
         for k in 0..self.ways.len() {
             let (depths, inside) = self.deepest(model, k, Some(state));
             deepest = deepest.max(depths);
@@ -261,7 +262,8 @@ impl Penetration {
     ) -> (Depths, Option<Inside>) {
         let Self { skins, kinks, ways, y, current, paired, rows, .. } = self;
         let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
-        let (mut deepest, mut worst) = (Depths::default(), None::<Inside>);
+        let mut deepest = Depths::default();
+        let mut worst = None::<Inside>;
         let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
         paired.clear();
         let kinks = &kinks[*body];
@@ -421,7 +423,8 @@ mod tests {
     /// What is too deep where a block of this many cells lies this deep in a wider one, whose
     /// facets are 0.5 long, from x = 0 to 4, in the plane or in space.
     fn too_deep(dimension: usize, cells: usize, from: f64, depth: f64) -> Option<Inside> {
-        let (wide, high) = (0.5 * cells as f64, 1.0 - depth);
+        let wide = 0.5 * cells as f64;
+        let high = 1.0 - depth;
         let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };
         let (meshes, [below, above]) = if dimension == 2 {
             let block = |min, max, cells| generate::rectangle(Element::T3, min, max, cells).unwrap();

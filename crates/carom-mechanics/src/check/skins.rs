@@ -151,7 +151,9 @@ pub(crate) fn kinks(model: &Model, part: &BodyInstance) -> Vec<usize> {
 
 /// The same as [`skin`] for its own nodes too.
 pub(crate) fn folding_skin(model: &Model, part: &BodyInstance) -> Option<BodySkin> {
-    let (pieces, first, reference) = (part.body.mesh().pieces(), part.first_node, &model.reference);
+    let pieces = part.body.mesh().pieces();
+    let first = part.first_node;
+    let reference = &model.reference;
     Some(match skin(model, part)? {
         BodySkin::Plane(skin) => BodySkin::Plane(skin.with_pieces(&pieces, first, reference)),
         BodySkin::Space(surface) => BodySkin::Space(surface.with_pieces(&pieces, first, reference)),

@@ -54,7 +54,8 @@ impl ValidCells {
     pub(crate) fn check(&mut self, model: &Model, y: &[f64]) -> Result<(), Rejected> {
         self.checked.resize_with(model.parts.len(), Checked::default);
         for (part, checked) in model.parts.iter().zip(&mut self.checked) {
-            let (now, dimension) = (part.of(y), part.body.mesh().dimension());
+            let now = part.of(y);
+            let dimension = part.body.mesh().dimension();
             if checked.holds(now, dimension) {
                 continue;
             }
@@ -82,8 +83,8 @@ impl ValidCells {
             if known && !checked.is_new {
                 continue;
             }
-            let ([before, now], dimension) =
-                ([before, now].map(|y| part.of(y)), part.body.mesh().dimension());
+            let [before, now] = [before, now].map(|y| part.of(y));
+            let dimension = part.body.mesh().dimension();
             if !checked.holds(before, dimension) {
                 check_paths(model, part, before, now)?;
             }
@@ -96,7 +97,8 @@ impl ValidCells {
 
 /// Checks the paths of a body's cells.
 fn check_paths(model: &Model, part: &BodyInstance, before: &[f64], now: &[f64]) -> Result<(), Rejected> {
-    let (body, d) = (&part.body, part.body.mesh().dimension());
+    let body = &part.body;
+    let d = part.body.mesh().dimension();
     let mut left = Vec::new();
     let compute = |first: usize, margins: &mut [f64], _: &mut [f64]| body.cell_margins(first, now, margins);
     let add = |cell: usize, margin: &[f64]| {
@@ -138,7 +140,8 @@ fn is_within(before: &[f64], now: &[f64], dimension: usize, margin: f64) -> bool
     }
     let mut common = [0.0; BLOCK];
     (0..BLOCK).for_each(|i| common[i] = now[i % dimension] - before[i % dimension]);
-    let (old, new) = (before.chunks(BLOCK), now.chunks(BLOCK));
+    let old = before.chunks(BLOCK);
+    let new = now.chunks(BLOCK);
     let mut within = true;
     for (old, new) in old.zip(new) {
         for ((old, new), common) in old.iter().zip(new).zip(&common) {
@@ -188,7 +191,8 @@ mod tests {
         let law = Law::NeoHookean { lambda: 1.0, mu: 1.0 };
         for mesh in std::iter::once(flat).chain(layers) {
             let model = model(parts([mesh], law, 1.0), &[], Motions::default(), Loads::default(), Vec::new());
-            let (d, start) = (model.dimension, &model.reference);
+            let d = model.dimension;
+            let start = &model.reference;
             let mut cells = ValidCells::default();
             let mut step = |times: [f64; 2], from: &[f64], to: &[f64]| {
                 cells.check(&model, to).and_then(|()| cells.check_paths(&model, times, [from, to]))

@@ -178,7 +178,9 @@ pub(crate) fn edge_points(
         let largest = |of: &HashMap<usize, f64>| {
             between.iter().filter_map(|(node, _)| of.get(node)).fold(0.0, |most: f64, x| most.max(*x))
         };
-        let (length, kept, node) = (largest(&longest), largest(&kept), between[0].0);
+        let length = largest(&longest);
+        let kept = largest(&kept);
+        let node = between[0].0;
         Watched { between, kept, ..Watched::new(node, length, false, contact.depths.others) }
     };
     points.into_iter().map(watched).collect()

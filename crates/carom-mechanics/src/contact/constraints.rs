@@ -104,7 +104,8 @@ impl Constraints {
     pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let model = equations.model;
         let mut constraints = Self::none(model.dimension);
-        let (mut rows, mut gradient) = (Rows::new(model.dimension), DiscreteGradient::default());
+        let mut rows = Rows::new(model.dimension);
+        let mut gradient = DiscreteGradient::default();
         let mut derivatives = SlipDerivatives::new(model.dimension);
         let slips = PreventedSlips::of(equations, evaluation);
         let places = slips.independent(equations, evaluation);
@@ -164,7 +165,8 @@ impl Constraints {
         let gradient = self.rows.gradient_mut(self.rows.len() - 1);
         gradient.fill(0.0);
         for tangent in (0..2).filter(|&tangent| along[tangent] != 0.0) {
-            let (turned, slope) = (&derivatives.turned[tangent], &derivatives.slopes[tangent]);
+            let turned = &derivatives.turned[tangent];
+            let slope = &derivatives.slopes[tangent];
             gradient.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
             // The force of a slip is that of its gap.
             if pair.tangential.friction_state == FrictionState::Stick {
@@ -286,7 +288,8 @@ fn derivative_of_direction(
     gradient: &mut DiscreteGradient,
 ) -> Vec<f64> {
     let contact = &equations.model.contacts[k];
-    let (row, pair) = (evaluation.rows[k].row(p), &evaluation.at.pairings[k].pairs[p]);
+    let row = evaluation.rows[k].row(p);
+    let pair = &evaluation.at.pairings[k].pairs[p];
     let Evaluation { y, place, at, .. } = evaluation;
     let mut matrix = vec![0.0; row.gradient.len().pow(2)];
     match contact.interface.direction() {

@@ -25,7 +25,8 @@ impl Equations<'_> {
     }
 
     fn clear_contacts(&self, evaluation: &mut Evaluation) {
-        let (contacts, dofs) = (self.model.contacts.len(), self.model.dofs());
+        let contacts = self.model.contacts.len();
+        let dofs = self.model.dofs();
         let Evaluation { at, forces, rows, turned, slips, middle, rests, answers, measure, .. } = evaluation;
         for list in [rows, turned, slips] {
             list.resize_with(contacts, || Rows::new(self.model.dimension));
@@ -90,7 +91,8 @@ impl Equations<'_> {
         evaluation: &mut Evaluation,
     ) -> Result<f64, ContactError> {
         let Evaluation { at, y, place, rows, .. } = evaluation;
-        let (contact, rows) = (&self.model.contacts[k], &mut rows[k]);
+        let contact = &self.model.contacts[k];
+        let rows = &mut rows[k];
         let at_middle = contact.interface.direction().accumulates();
         if at_middle && pair.start.is_none() {
             // The initial gap of a new pair; later it is updated.

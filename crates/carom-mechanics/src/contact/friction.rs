@@ -162,7 +162,8 @@ impl Equations<'_> {
 
     /// Sets the traction of a closed pair from its slip.
     pub(crate) fn rub(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) -> Rubbing {
-        let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
+        let law = self.laws[contact][pair.node];
+        let pressure = (-pair.lambda).max(0.0);
         let rate = self.rate(part);
         let radius = law.slip(pressure, length(slip) * rate);
         if let Some(stiffness) = self.stick_spring(contact, pair) {
@@ -197,7 +198,8 @@ impl Equations<'_> {
         part: Counted,
     ) -> (Along, f64) {
         let trial = self.trial(contact, pair, stiffness, slip);
-        let (law, pressure) = (self.laws[contact][pair.node], (-pair.lambda).max(0.0));
+        let law = self.laws[contact][pair.node];
+        let pressure = (-pair.lambda).max(0.0);
         let start =
             self.state.closed(contact, pair.node).map(|old| old.tangential.friction_state.direction());
         let slipped = start.is_some_and(|direction| inner(direction, trial) > 0.0);
@@ -279,7 +281,9 @@ impl Equations<'_> {
     ) -> Result<(), ContactError> {
         let weight = contact_weights(&self.stage, self.model.contacts[contact].at_the_end).0;
         let Evaluation { at, middle, rows, turned, slips, rests, forces, measure, .. } = evaluation;
-        let (rows, turned, slips) = (&rows[contact], &mut turned[contact], &mut slips[contact]);
+        let rows = &rows[contact];
+        let turned = &mut turned[contact];
+        let slips = &mut slips[contact];
         let p = rows.len() - 1;
         if !pair.active {
             rows_of(slips, p).for_each(|_| slips.push_open());

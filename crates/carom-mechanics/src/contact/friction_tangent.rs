@@ -20,7 +20,8 @@ impl Equations<'_> {
             return;
         }
         let kinematics = &self.model.contacts[contact].kinematics;
-        let (slips, pair) = (&evaluation.slips[contact], &evaluation.at.pairings[contact].pairs[p]);
+        let slips = &evaluation.slips[contact];
+        let pair = &evaluation.at.pairings[contact].pairs[p];
         rows.clear();
         let part = self.part(contact, pair, evaluation.rows[contact].row(p).gap, rows);
         let share = if let Counted::Share(share) = part { share } else { 1.0 };
@@ -28,7 +29,8 @@ impl Equations<'_> {
         // It was measured in the evaluation.
         let is_there = kinematics.measure(&mut at_middle, &evaluation.middle, rows).is_ok();
         for (tangent, row) in rows_of(slips, p).map(|row| slips.row(row)).enumerate() {
-            let (turned, slope) = (&mut turned[tangent], &mut slopes[tangent]);
+            let turned = &mut turned[tangent];
+            let slope = &mut slopes[tangent];
             slope.clear();
             slope.extend(row.gradient.iter().map(|h| share * h));
             turned.clear();
@@ -36,7 +38,8 @@ impl Equations<'_> {
             if !is_there {
                 continue;
             }
-            let (y, moved) = (&evaluation.middle, &evaluation.at.increment);
+            let y = &evaluation.middle;
+            let moved = &evaluation.at.increment;
             kinematics.slip_derivative_into(&at_middle, y, moved, tangent, turned);
             turned.iter_mut().for_each(|entry| *entry *= 0.5);
             let counted = row.entries().map(|(dof, _)| self.counted(dof, part, &evaluation.at.increment));

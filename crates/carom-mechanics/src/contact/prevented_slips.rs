@@ -46,7 +46,8 @@ impl PreventedSlips {
     pub(crate) fn independent(&self, equations: &Equations, evaluation: &Evaluation) -> Vec<Name> {
         let model = equations.model;
         let is_elastic = |&(k, p, number): &Name| {
-            let (contact, pair) = (&model.contacts[k], &evaluation.at.pairings[k].pairs[p]);
+            let contact = &model.contacts[k];
+            let pair = &evaluation.at.pairings[k].pairs[p];
             let yields = number == 0 || pair.tangential.friction_state == FrictionState::Stick;
             !contact.interface.is_constraint() || contact.augmentation.is_some() && yields
         };

@@ -60,7 +60,8 @@ fn each(
     found: &mut Events,
     mut change: impl FnMut(&Contact, &mut Pairing, &mut Vec<PairEvent>) -> bool,
 ) -> bool {
-    let (mut changed, mut events) = (false, Vec::new());
+    let mut changed = false;
+    let mut events = Vec::new();
     for (k, (contact, pairing)) in model.contacts.iter().zip(pairings).enumerate() {
         changed |= change(contact, pairing, &mut events);
         found.extend(events.drain(..).map(|event| (k, event)));
@@ -137,7 +138,8 @@ impl<'a> ContactUpdate<'a> {
         let gaps: BTreeSet<_> =
             rows.list.iter().filter(|row| row.slip.is_none()).map(|row| row.place).collect();
         for (k, p) in now.pressing().filter(|place| !gaps.contains(place)) {
-            let (contact, depth) = (&model.contacts[k], -now.rows[k].row(p).gap);
+            let contact = &model.contacts[k];
+            let depth = -now.rows[k].row(p).gap;
             if contact.interface.is_constraint() && depth > model.gap_tolerance {
                 let node = contact.node(&now.at.pairings[k].pairs[p]);
                 return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
@@ -230,7 +232,9 @@ impl<'a> ContactUpdate<'a> {
         settled: bool,
         step: f64,
     ) -> Result<bool, Rejected> {
-        let (equations, model, mut changed) = (self.equations, self.equations.model, false);
+        let equations = self.equations;
+        let model = self.equations.model;
+        let mut changed = false;
         // The activity of a spring follows from its gap alone.
         let constraints =
             model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
@@ -272,7 +276,8 @@ impl<'a> ContactUpdate<'a> {
 
     /// Updates stick and slip of the closed pairs with friction; returns whether one changed.
     fn change_holds(&mut self, evaluation: &mut Evaluation, settled: bool) -> Result<bool, Rejected> {
-        let (equations, mut changed) = (self.equations, false);
+        let equations = self.equations;
+        let mut changed = false;
         for (k, contact) in equations.model.contacts.iter().enumerate() {
             if contact.friction.is_none() {
                 continue;

@@ -135,7 +135,8 @@ impl Direct {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
         };
-        let (saddle, elimination) = (&mut self.saddle, condensed.elimination());
+        let saddle = &mut self.saddle;
+        let elimination = condensed.elimination();
         self.springs.clear();
         self.springs.extend(rows.list.iter().map(|row| row.compliance != 0.0));
         let count = self.springs.iter().filter(|is_spring| !**is_spring).count();
@@ -256,7 +257,8 @@ impl Preconditioner for Direct {
         if row_nodes.is_empty() {
             return last.to_vec();
         }
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
         for &node in &row_nodes {
             for i in 0..d {
                 (low[i], high[i]) = (low[i].min(y[node * d + i]), high[i].max(y[node * d + i]));
@@ -395,7 +397,8 @@ mod tests {
         let point = Point { mass: 2.0, stiffness: 2.0, ..Point::default() };
         let enough = |size: usize, mass: f64, stiffness: f64| {
             let pattern = Pattern::from_entries(size, []);
-            let (mut masses, mut stiffnesses) = (vec![1.0; size], vec![10.0; size]);
+            let mut masses = vec![1.0; size];
+            let mut stiffnesses = vec![10.0; size];
             (masses[7], stiffnesses[7]) = (mass, stiffness);
             single_is_enough(&pattern, &point, &masses, &stiffnesses)
         };

@@ -103,7 +103,9 @@ impl Iterative {
     fn assemble_times(&mut self, model: &Model, at: &Configuration, factor: f64) -> Result<(), Rejected> {
         self.point = None;
         self.matrix.clear();
-        let (matrix, [_, diagonal], d) = (&mut self.matrix, &mut self.diagonals, model.dimension);
+        let matrix = &mut self.matrix;
+        let [_, diagonal] = &mut self.diagonals;
+        let d = model.dimension;
         diagonal.fill(0.0);
         let mut slots = self.slots.iter();
         each_tangent(model, at, |part, cell, tangent| {
@@ -183,7 +185,8 @@ impl Preconditioner for Iterative {
             let slot = matrix.slot(node, node).unwrap_or_default();
             let values = matrix.block(slot).iter().enumerate();
             for (entry, (k, value)) in block.iter_mut().zip(values) {
-                let (i, j) = (k / d, k % d);
+                let i = k / d;
+                let j = k % d;
                 let is_free = !model.fixed[node * d + i] && !model.fixed[node * d + j];
                 *entry = if is_free { f64::from(*value) } else { f64::from(u8::from(i == j)) };
             }
@@ -269,7 +272,8 @@ impl Preconditioner for Iterative {
             }
             let unusable = ended.iterations == MOST || ended.is_indefinite && ended.iterations == 1;
             if unusable || !increment.iter().all(|x| x.is_finite()) {
-                let (iterations, reduction) = (ended.iterations, ended.reduction);
+                let iterations = ended.iterations;
+                let reduction = ended.reduction;
                 return Err(LinearError::Stalled { size: model.free.len(), iterations, reduction });
             }
             yielding.for_each(|(r, _)| multipliers[r] = rows.pulled(r, gaps[r], increment));

@@ -46,7 +46,8 @@ impl Matrices {
                 }
             }
         }
-        let (d, mut mass) = (model.dimension, vec![0.0; pattern.len()]);
+        let d = model.dimension;
+        let mut mass = vec![0.0; pattern.len()];
         for node in 0..model.mass.nodes() {
             for (other, value) in model.mass.row(node) {
                 for i in 0..d {
@@ -73,7 +74,8 @@ impl Matrices {
     /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter
     /// in space only.
     pub(crate) fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
-        let (mut at, mut slots) = (LoadsAt::default(), self.facet_slots.iter());
+        let mut at = LoadsAt::default();
+        let mut slots = self.facet_slots.iter();
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
         self.follower.fill(0.0);
         let follower = &mut self.follower;
@@ -159,7 +161,8 @@ fn add_carried(model: &Model, pattern: &Pattern, [row, column]: [usize; 2], valu
 /// The pattern of the bodies: unknowns of every two nodes that share a cell, or carry those of one.
 /// Nodes are paired first, which avoids a list of all pairs of dofs.
 fn pattern(model: &Model) -> Pattern {
-    let (d, mut neighbours) = (model.dimension, coupled(model));
+    let d = model.dimension;
+    let mut neighbours = coupled(model);
     add_carriers(model, &mut neighbours);
     for (node, nodes) in neighbours.iter_mut().enumerate() {
         // The mass of a rigid obstacle has no cells.

@@ -154,7 +154,8 @@ impl System {
         renewal: &mut Renewal,
     ) -> Result<(), Rejected> {
         renewal.due = false;
-        let (model, last) = (equations.model, renewal.frozen.point.as_deref());
+        let model = equations.model;
+        let last = renewal.frozen.point.as_deref();
         let boundary = self.preconditioner.boundary(model, &now.place, rows, last);
         // Far from the solution the tangent may be indefinite; with inertia, that at the step's
         // start is almost always positive definite.

@@ -32,7 +32,8 @@ pub(crate) struct Wholes(Vec<Whole>);
 impl Wholes {
     pub(crate) fn new(model: &Model) -> Self {
         let d = model.dimension;
-        let (mut shift, mut product) = (vec![0.0; model.dofs()], vec![0.0; model.dofs()]);
+        let mut shift = vec![0.0; model.dofs()];
+        let mut product = vec![0.0; model.dofs()];
         let mut wholes = Vec::new();
         for (piece, axis) in pieces(model).iter().flat_map(|piece| (0..d).map(move |axis| (piece, axis))) {
             let dofs: Vec<usize> = piece.iter().map(|node| node * d + axis).collect();
@@ -58,7 +59,8 @@ impl Wholes {
         let springs: Vec<usize> = (0..rows.len()).filter(|&r| rows.list[r].compliance > 0.0).collect();
         let is_on = |whole: &Whole, r: usize| rows.rows.row(r).entries().any(|(dof, _)| whole.has(dof));
         for whole in self.0.iter().filter(|whole| !springs.iter().any(|&r| is_on(whole, r))) {
-            let (mut force, mut inertia) = (0.0, 0.0);
+            let mut force = 0.0;
+            let mut inertia = 0.0;
             for (&dof, moved) in whole.dofs.iter().zip(&whole.moved) {
                 force += forces[dof];
                 inertia += moved * increment[dof];

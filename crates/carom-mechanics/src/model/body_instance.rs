@@ -68,13 +68,15 @@ impl BodyInstance {
 
     /// Its section of a vector over all nodes.
     pub fn of<'a>(&self, all: &'a [f64]) -> &'a [f64] {
-        let (nodes, d) = (self.nodes(), self.body.mesh().dimension());
+        let nodes = self.nodes();
+        let d = self.body.mesh().dimension();
         &all[nodes.start * d..nodes.end * d]
     }
 
     /// Its section of a vector over all nodes, to be changed.
     pub fn of_mut<'a>(&self, all: &'a mut [f64]) -> &'a mut [f64] {
-        let (nodes, d) = (self.nodes(), self.body.mesh().dimension());
+        let nodes = self.nodes();
+        let d = self.body.mesh().dimension();
         &mut all[nodes.start * d..nodes.end * d]
     }
 
@@ -107,7 +109,8 @@ impl BodyInstance {
     ) -> Result<(), NoValue> {
         let mesh = self.body.mesh();
         let d = mesh.dimension();
-        let (mut local, mut b) = (vec![0.0; mesh.element.dofs()], vec![0.0; d]);
+        let mut local = vec![0.0; mesh.element.dofs()];
+        let mut b = vec![0.0; d];
         let mut failure = Ok(());
         for cell in self.cells(region) {
             local.fill(0.0);

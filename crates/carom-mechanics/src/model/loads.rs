@@ -63,7 +63,8 @@ impl<On> Load<On> {
         places: &(impl Iterator<Item = &'a [f64]> + Clone),
         time: f64,
     ) -> Result<Vec<f64>, NoValue> {
-        let (factor, d) = (self.factor(time), self.value.len());
+        let factor = self.factor(time);
+        let d = self.value.len();
         let mut vectors = Vec::new();
         for (i, formula) in self.value.iter().enumerate() {
             let values = values(formula, &self.label, places.clone(), time)?;
@@ -138,7 +139,8 @@ impl Loads {
         for load in &self.body_forces {
             let InBody { part, region } = load.on;
             let part = &parts[part];
-            let (places, d) = (part.volume_points(region), load.value.len());
+            let places = part.volume_points(region);
+            let d = load.value.len();
             let densities = load.vectors(&places.chunks_exact(d), time)?;
             let mut densities = densities.chunks_exact(d);
             let density = |_: usize, _: &[f64], out: &mut [f64]| {

@@ -25,7 +25,8 @@ impl Mass {
         for (part, lumped) in parts.iter().zip(lumped) {
             let mesh = part.body.mesh();
             let n = mesh.element.nodes();
-            let (mut local, mut diagonal) = (vec![0.0; n * n], vec![0.0; n]);
+            let mut local = vec![0.0; n * n];
+            let mut diagonal = vec![0.0; n];
             for cell in 0..mesh.cell_count() {
                 if *lumped {
                     cell_lumped_mass(&*part.body, cell, &mut local, &mut diagonal);

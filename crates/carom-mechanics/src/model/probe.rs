@@ -53,7 +53,8 @@ impl Probe {
         out: &mut Vec<f64>,
     ) {
         let past = past_of(parts, self.part, memory);
-        let (part, [y, v, a]) = (&parts[self.part], motion);
+        let part = &parts[self.part];
+        let [y, v, a] = motion;
         let nodal = |field: &[f64], i: usize| {
             let (cell, xi) = &self.places[0];
             interpolated(&*part.body, *cell, xi, part.of(field), i)
@@ -78,7 +79,8 @@ impl Probe {
     }
 
     fn mean(&self, body: &dyn Body, y: &[f64], past: &Past, quantity: Quantity) -> f64 {
-        let (mut sum, mut count) = (0.0, 0);
+        let mut sum = 0.0;
+        let mut count = 0;
         for (cell, xi) in &self.places {
             let point = body.point(*cell, xi, y, past);
             let value = match (quantity, &point) {
@@ -112,7 +114,8 @@ fn is_stress(quantity: Quantity) -> bool {
 }
 
 fn interpolated(body: &dyn Body, cell: usize, xi: &[f64], field: &[f64], i: usize) -> f64 {
-    let (nodes, d) = (body.mesh().cell(cell), body.mesh().dimension());
+    let nodes = body.mesh().cell(cell);
+    let d = body.mesh().dimension();
     let mut shape = vec![0.0; nodes.len()];
     body.shape(xi, &mut shape);
     nodes.iter().zip(&shape).map(|(&n, s)| s * field[n * d + i]).sum()

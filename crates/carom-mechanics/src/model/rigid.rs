@@ -94,7 +94,8 @@ impl RigidMotion {
     /// Displacement of a point along an axis.
     pub(crate) fn at(&self, place: &[f64], axis: usize) -> f64 {
         let arm = |i: usize| place.get(i).map_or(0.0, |x| (x - self.centre[i]) / self.size);
-        let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+        let j = (axis + 1) % 3;
+        let k = (axis + 2) % 3;
         self.translation[axis] + self.rotation[j] * arm(k) - self.rotation[k] * arm(j)
     }
 

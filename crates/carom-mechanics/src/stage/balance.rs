@@ -43,7 +43,8 @@ pub(crate) fn contact_weights(stage: &Stage, at_the_end: bool) -> (f64, f64) {
 /// Mean over the step of the known acceleration of a prescribed dof, with the weights of external
 /// forces.
 pub(crate) fn mean_acceleration(stage: &Stage, now: f64, before: f64) -> f64 {
-    let (weight, known) = (stage.weights.external, stage.before.external);
+    let weight = stage.weights.external;
+    let known = stage.before.external;
     weight * (1.0 - stage.average) * now + (known + weight * stage.average) * before
 }
 

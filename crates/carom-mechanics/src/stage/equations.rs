@@ -107,8 +107,10 @@ impl<'a> Equations<'a> {
     pub(crate) fn point(&self, at: &[f64], boundary: &[usize]) -> Arc<FactorPoint> {
         let follows = self.model.loads.follow_sides();
         let [follower, time] = if follows { [self.follower_factor(), self.time] } else { [0.0; 2] };
-        let (mass, stiffness) = (self.mass_factor(), self.factor_stiffness());
-        let (at, boundary) = (at.to_vec(), boundary.to_vec());
+        let mass = self.mass_factor();
+        let stiffness = self.factor_stiffness();
+        let at = at.to_vec();
+        let boundary = boundary.to_vec();
         let memory = self.state.materials.memory.clone();
         let dt = if memory.is_empty() { 0.0 } else { self.duration };
         Arc::new(FactorPoint { at, mass, stiffness, follower, time, memory, dt, boundary })
@@ -220,7 +222,9 @@ impl<'a> Equations<'a> {
         let at = self.configuration(if self.between() { &now.y } else { &now.place });
         timed(&mut timings.assembly, || model.internal_product(&at, change, product))
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-        let (mass, stiffness, d) = (self.mass_factor(), self.stiffness_factor(), model.dimension);
+        let mass = self.mass_factor();
+        let stiffness = self.stiffness_factor();
+        let d = model.dimension;
         model.mass.add_product(change, mass, stiffness, product);
         if model.loads.follow_sides() {
             let factor = self.follower_factor();

@@ -199,7 +199,8 @@ impl LinearProblem {
         rows: &Constraints,
         [increment, multipliers]: [Vec<f64>; 2],
     ) -> [Vec<f64>; 2] {
-        let (forces, gaps) = (vec![0.0; increment.len()], vec![0.0; multipliers.len()]);
+        let forces = vec![0.0; increment.len()];
+        let gaps = vec![0.0; multipliers.len()];
         let mut problem = Self { forces, gaps, increment, multipliers, ..Self::default() };
         problem.subtract_product(equations, now, rows, &mut Timings::default()).unwrap();
         [problem.forces, problem.gaps].map(|right| right.iter().map(|value| -value).collect())

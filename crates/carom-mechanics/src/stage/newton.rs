@@ -139,7 +139,9 @@ impl<'a> Newton<'a> {
         mut guess: Iterate,
         work: &'a mut Workspace,
     ) -> Result<(Self, Evaluation), Rejected> {
-        let (model, state, is_static) = (equations.model, equations.state, equations.stage.is_static());
+        let model = equations.model;
+        let state = equations.state;
+        let is_static = equations.stage.is_static();
         let contact = ContactUpdate::new(equations, before);
         contact.start(&mut guess);
         let predicted = max_abs(&guess.increment);
@@ -149,7 +151,8 @@ impl<'a> Newton<'a> {
             stiffer: 0,
         };
         let factors = [equations.mass_factor(), equations.factor_stiffness()];
-        let (double, cost) = (settings.tangent != Tangent::Frozen, work.system.preconditioner.cost());
+        let double = settings.tangent != Tangent::Frozen;
+        let cost = work.system.preconditioner.cost();
         work.trace.start();
         let mut newton = Self {
             equations,
@@ -229,8 +232,11 @@ impl<'a> Newton<'a> {
     /// solve shrinks with the residual, so the residual is reduced further if linear problems are
     /// solved inexactly. Without inertia corrections may grow before they shrink.
     fn has_converged(&mut self, now: &Evaluation) -> bool {
-        let (equations, model, measure) = (self.equations, self.equations.model, &now.measure);
-        let (is_static, tolerance) = (equations.stage.is_static(), self.settings.tolerance);
+        let equations = self.equations;
+        let model = self.equations.model;
+        let measure = &now.measure;
+        let is_static = equations.stage.is_static();
+        let tolerance = self.settings.tolerance;
         self.noise = self.work.system.round_off(equations);
         self.enough = DIGITS * tolerance * measure.forces + self.noise;
         self.step * if is_static { 1.0 } else { self.ratio.min(1.0) } <= tolerance * model.scale
@@ -242,8 +248,8 @@ impl<'a> Newton<'a> {
 
     /// Updates the contacts of an iterate; returns whether one changed.
     fn change_contacts(&mut self, now: &mut Evaluation, converged: bool) -> Result<bool, Rejected> {
-        let (changed, scale) =
-            (self.contact.update(now, converged, self.step, self.work)?, self.equations.model.scale);
+        let changed = self.contact.update(now, converged, self.step, self.work)?;
+        let scale = self.equations.model.scale;
         let iterate = Iteration {
             number: self.iteration as u32,
             residual: now.measure.residual / now.measure.forces.max(f64::MIN_POSITIVE),
@@ -260,7 +266,9 @@ impl<'a> Newton<'a> {
     /// # Errors
     /// After too many iterations, or corrections that grow.
     fn check_progress(&mut self, now: &Evaluation, changed: bool) -> Result<(), Rejected> {
-        let (equations, model, measure) = (self.equations, self.equations.model, &now.measure);
+        let equations = self.equations;
+        let model = self.equations.model;
+        let measure = &now.measure;
         let is_static = equations.stage.is_static();
         if self.iteration < self.settings.max_iterations && (is_static || self.grown <= PATIENCE) {
             return Ok(());
@@ -286,10 +294,13 @@ impl<'a> Newton<'a> {
         rows: &Constraints,
         changed: bool,
     ) -> Result<Correction, Rejected> {
-        let (equations, model, settings) = (self.equations, self.equations.model, self.settings);
+        let equations = self.equations;
+        let model = self.equations.model;
+        let settings = self.settings;
         let is_static = equations.stage.is_static();
         if is_static {
-            let (gaps, slips) = (rows.rows.iter(), now.slipping());
+            let gaps = rows.rows.iter();
+            let slips = now.slipping();
             check_rigid_modes(&model.parts, &model.unconstrained, &now.place, gaps, slips)?;
         }
         let made = self.renewal.made;
@@ -325,7 +336,8 @@ impl<'a> Newton<'a> {
         rows: &Constraints,
         changed: bool,
     ) -> Result<Evaluation, Rejected> {
-        let (equations, scale) = (self.equations, self.equations.model.scale);
+        let equations = self.equations;
+        let scale = self.equations.model.scale;
         let size = max_abs(&correction.increment);
         self.grown += u32::from(!changed && size > self.step && size > self.settings.tolerance * scale);
         self.step = size;
@@ -336,7 +348,8 @@ impl<'a> Newton<'a> {
             let [before, after] = [&now.measure, &next.measure].map(merit);
             compares && after > WORSE * before && after > NEGLIGIBLE
         };
-        let (mut length, mut outcome) = (1.0, self.take(&now, correction, rows, 1.0));
+        let mut length = 1.0;
+        let mut outcome = self.take(&now, correction, rows, 1.0);
         while length > SHORTEST && outcome.as_ref().map_or(true, is_worse) {
             length *= 0.5;
             self.work.linear.restart();

@@ -46,7 +46,9 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation, noise: f64) 
     let slope = equations.mass_factor();
     let springs = of_springs(equations, now);
     model.unconstrained.iter().all(|mode| {
-        let (mut sums, mut sizes, mut whole) = ([0.0; 5], 0.0, 0.0);
+        let mut sums = [0.0; 5];
+        let mut sizes = 0.0;
+        let mut whole = 0.0;
         let of_bodies = mode.motions.iter();
         for (rigid, node) in
             of_bodies.flat_map(|rigid| model.parts[rigid.part].nodes().map(move |n| (rigid, n)))

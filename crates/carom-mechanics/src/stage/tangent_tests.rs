@@ -45,7 +45,8 @@ impl<'a> Tangent<'a> {
     /// The same for other pairs.
     fn from(equations: &'a Equations<'a>, mut at: Iterate, size: f64) -> Self {
         let model = equations.model;
-        let (mut spare, mut timings) = (Spare::default(), Timings::default());
+        let mut spare = Spare::default();
+        let mut timings = Timings::default();
         model.free.iter().for_each(|&dof| at.increment[dof] = size * wave(dof, 0.3));
         model.points.carry(&mut at.increment);
         let now = equations.evaluate(at, &mut spare, &mut timings).unwrap();
@@ -61,7 +62,8 @@ impl<'a> Tangent<'a> {
     /// The matrix times a direction.
     fn product(&mut self, u: &[f64]) -> Vec<f64> {
         let Self { equations, at, rows, spare, timings } = self;
-        let (free, mut change) = (&equations.model.free, vec![0.0; equations.model.dofs()]);
+        let free = &equations.model.free;
+        let mut change = vec![0.0; equations.model.dofs()];
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| change[dof] = *u);
         equations.model.points.carry(&mut change);
@@ -75,12 +77,14 @@ impl<'a> Tangent<'a> {
     /// Residual at free dofs and weighted gaps of the rows, at distance `e` along a direction.
     fn residual(&mut self, u: &[f64], e: f64) -> Vec<f64> {
         let Self { equations, at, rows, spare, timings } = self;
-        let (free, mut at) = (&equations.model.free, at.clone());
+        let free = &equations.model.free;
+        let mut at = at.clone();
         let (dofs, multipliers) = u.split_at(free.len());
         free.iter().zip(dofs).for_each(|(&dof, u)| at.increment[dof] += e * u);
         equations.model.points.carry(&mut at.increment);
         for (row, u) in rows.list.iter().zip(multipliers) {
-            let ((k, p), slip) = (row.place, &row.slip);
+            let (k, p) = row.place;
+            let slip = &row.slip;
             let pair = &mut at.pairings[k].pairs[p];
             match slip {
                 None => pair.lambda += e * u,
@@ -105,10 +109,12 @@ impl<'a> Tangent<'a> {
     /// extrapolated.
     fn derivative(&mut self, u: &[f64], h: f64) -> Vec<f64> {
         let mut slope = |h: f64| -> Vec<f64> {
-            let (plus, minus) = (self.residual(u, h), self.residual(u, -h));
+            let plus = self.residual(u, h);
+            let minus = self.residual(u, -h);
             plus.iter().zip(&minus).map(|(p, m)| (p - m) / (2.0 * h)).collect()
         };
-        let (fine, coarse) = (slope(h), slope(2.0 * h));
+        let fine = slope(h);
+        let coarse = slope(2.0 * h);
         fine.iter().zip(&coarse).map(|(fine, coarse)| (4.0 * fine - coarse) / 3.0).collect()
     }
 }
@@ -133,7 +139,8 @@ fn equations<'a>(model: &'a Model, state: &'a State, scheme: &dyn Kernel, dt: f6
 
 /// A state at some positions, with irregular accelerations; no pairs.
 fn at(model: &Model, y: Vec<f64>) -> State {
-    let (dofs, contacts) = (model.dofs(), model.contacts.len());
+    let dofs = model.dofs();
+    let contacts = model.contacts.len();
     let mut state = State {
         y,
         v: model.initial_velocity.clone(),
@@ -154,7 +161,8 @@ fn at(model: &Model, y: Vec<f64>) -> State {
 /// The same with the nodes of the first body, along the last axis, at `height` of their initial
 /// one, and closed pairs where the gap is below `near`.
 fn touching(model: &Model, near: f64, height: impl Fn(usize, f64) -> f64) -> State {
-    let (d, kinematics) = (model.dimension, &model.contacts[0].kinematics);
+    let d = model.dimension;
+    let kinematics = &model.contacts[0].kinematics;
     let mut y = model.initial_position.clone();
     let own: Vec<usize> = model.parts[0].nodes().map(|node| d * node + d - 1).collect();
     own.iter().for_each(|&dof| y[dof] = height(dof, y[dof]));
@@ -207,8 +215,10 @@ fn the_whole_tangent_with_contact_is_the_derivative_of_the_residual() {
         let equations = equations(&model, &state, &scheme, DT, DT);
         let mut tangent = Tangent::new(&equations, 1e-3);
         assert!(tangent.rows.len() > 3);
-        let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
-        let (ku, kw) = (tangent.product(&u), tangent.product(&w));
+        let u = tangent.direction(0.1);
+        let w = tangent.direction(0.7);
+        let ku = tangent.product(&u);
+        let kw = tangent.product(&w);
         assert!((dot(&ku, &w) - dot(&kw, &u)).abs() < 1e-12 * dot(&ku, &ku).sqrt() * dot(&w, &w).sqrt());
         for (i, (numeric, k)) in tangent.derivative(&u, 2.5e-5).iter().zip(&ku).enumerate() {
             assert!((numeric - k).abs() < 1e-7 * largest(&ku), "{scheme:?} {i}: {numeric} {k}");
@@ -259,8 +269,8 @@ fn the_whole_tangent_with_friction_is_the_derivative_of_the_residual() {
         closed.take(2).for_each(|pair| pair.active = false);
         let equations = equations(&model, &state, &scheme, DT, DT);
         let mut tangent = Tangent::from(&equations, at, 1e-3);
-        let (sticks, rows) =
-            (tangent.rows.list.iter().filter_map(|row| row.slip).count(), tangent.rows.len());
+        let sticks = tangent.rows.list.iter().filter_map(|row| row.slip).count();
+        let rows = tangent.rows.len();
         assert!(sticks >= 2 && rows - sticks > sticks, "{sticks} {rows}");
         let u = tangent.direction(0.1);
         let ku = tangent.product(&u);
@@ -319,12 +329,14 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
         for (p, pair) in
             at.pairings[0].pairs.iter_mut().enumerate().filter(|(p, pair)| pair.active && p % 3 > 0)
         {
-            let ([x, y], (sin, cos)) = (now.slip_of((0, p)), 0.4_f64.sin_cos());
+            let [x, y] = now.slip_of((0, p));
+            let (sin, cos) = 0.4_f64.sin_cos();
             pair.tangential.friction_state = FrictionState::of([cos * x - sin * y, sin * x + cos * y], 0.0);
         }
         let mut tangent = Tangent::from(&equations, at, 1e-3);
         let slips = tangent.rows.list.iter().filter_map(|row| row.slip);
-        let (sticks, rows) = (slips.clone().filter(|along| along.contains(&1.0)).count(), tangent.rows.len());
+        let sticks = slips.clone().filter(|along| along.contains(&1.0)).count();
+        let rows = tangent.rows.len();
         assert!(
             sticks > 2 && slips.count() > sticks + 1 && tangent.rows.list.iter().any(|row| row.yields > 0.0)
         );
@@ -408,8 +420,10 @@ fn the_tangent_under_pressure_is_the_derivative_of_the_residual() {
         // Without inertia and with soft springs the pressure dominates the tangent.
         let equations = equations(&model, &state, &scheme, 1e3, 0.1);
         let mut tangent = Tangent::new(&equations, 1e-2);
-        let (u, w) = (tangent.direction(0.1), tangent.direction(0.7));
-        let (ku, kw) = (tangent.product(&u), tangent.product(&w));
+        let u = tangent.direction(0.1);
+        let w = tangent.direction(0.7);
+        let ku = tangent.product(&u);
+        let kw = tangent.product(&w);
         for (i, (numeric, k)) in tangent.derivative(&u, 1e-4).iter().zip(&ku).enumerate() {
             assert!((numeric - k).abs() < 1e-7 * largest(&ku), "{on} {pressure} {i}: {numeric} {k}");
         }
@@ -425,8 +439,9 @@ fn the_product_of_a_discrete_gradient_is_the_derivative_of_its_force() {
     let at = |size: f64, seed: f64| -> Vec<f64> {
         model.initial_position.iter().enumerate().map(|(i, y)| y + size * wave(i, seed)).collect()
     };
-    let (before, y, u) =
-        (at(0.02, 0.3), at(0.03, 0.9), (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>());
+    let before = at(0.02, 0.3);
+    let y = at(0.03, 0.9);
+    let u = (0..model.dofs()).map(|i| wave(i, 0.1)).collect::<Vec<_>>();
     let mut product = vec![0.0; model.dofs()];
     let at = Configuration { before: Some(&before), ..Configuration::at(&y) };
     model.internal_product(&at, &u, &mut product).unwrap();

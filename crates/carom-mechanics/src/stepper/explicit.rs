@@ -208,7 +208,8 @@ impl Explicit {
         let mut free = Vec::new();
         self.accelerate_freely(model, state, &mut work.explicit.ties, &mut free);
         let before: Vec<f64> = state.v.iter().zip(&free).map(|(v, a)| v - 0.5 * dt * a).collect();
-        let (velocity, kinetic) = (state.v.clone(), state.ledger.kinetic);
+        let velocity = state.v.clone();
+        let kinetic = state.ledger.kinetic;
         let last = state.half_step.dt;
         let lent = self.lent(model, state, last);
         self.advance_half_step(model, state, &before, dt, work, report)?;

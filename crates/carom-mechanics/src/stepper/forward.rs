@@ -35,7 +35,8 @@ impl Forward<'_> {
         row: &mut Rows,
     ) -> bool {
         let share = self.dt / self.state.half_step.longest.max(self.dt);
-        let (mut behind, mut leaves) = (false, false);
+        let mut behind = false;
+        let mut leaves = false;
         for (p, pair) in pairs.iter_mut().enumerate() {
             let gap = rows.row(p).gap;
             behind |= gap < -tolerance;

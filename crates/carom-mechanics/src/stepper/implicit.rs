@@ -81,7 +81,9 @@ impl Stepper for Implicit {
         let mut guess = Iterate::at_start(state);
         start_step(model, &state.y, &mut guess.pairings);
         let shift = self.predictor_shift(model, state, dt, to, work)?;
-        let (mut end, mut ends, mut last) = (0.0, vec![state.time], None);
+        let mut end = 0.0;
+        let mut ends = vec![state.time];
+        let mut last = None;
         for k in 0..self.kernel.stages() {
             let mut stage = self.stage(k, dt, state, &finished);
             if let Some(shift) = &shift {

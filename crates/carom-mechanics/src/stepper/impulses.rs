@@ -130,7 +130,8 @@ impl Impulses {
         let laws = model.friction_laws(state.time + dt)?;
         let mut combination = Rows::new(model.dimension);
         for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
-            let (contact, pair) = (&model.contacts[k], &mut pairings[k].pairs[p]);
+            let contact = &model.contacts[k];
+            let pair = &mut pairings[k].pairs[p];
             let Some(law) = laws[k].get(pair.node) else { continue };
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
             let mut slips = Rows::new(model.dimension);

@@ -192,11 +192,13 @@ pub(super) fn solve(
     let mut correction = vec![0.0; dofs];
     let mut columns = vec![vec![0.0; dofs]; impulses.rows.len()];
     let mut target = impulses.values.clone();
-    let (mut step, mut due) = (f64::INFINITY, true);
+    let mut step = f64::INFINITY;
+    let mut due = true;
     work.trace.start();
     let mut now = evaluate(equations, shares, increment, impulses, work)?;
     for iteration in 0.. {
-        let (size, forces) = (now.measure.residual, now.measure.forces);
+        let size = now.measure.residual;
+        let forces = now.measure.forces;
         let iterate = Iteration {
             number: iteration as u32,
             residual: size / forces.max(f64::MIN_POSITIVE),

@@ -43,7 +43,8 @@ pub(super) fn solve_in_velocity(
     mut pairings: Vec<Pairing>,
     work: &mut Workspace,
 ) -> Result<(Evaluation, Effort), Rejected> {
-    let (model, state) = (equations.model, equations.state);
+    let model = equations.model;
+    let state = equations.state;
     let shares = ImpulseShares { force: 1.0 / dt, ..ImpulseShares::default() };
     let mut effort = Effort::default();
     let mut increment = vec![0.0; state.y.len()];

@@ -60,7 +60,8 @@ impl Increments<'_> {
         scratch: &mut Scratch,
         report: &mut StepReport,
     ) -> Result<bool, Rejected> {
-        let (model, tolerance) = (self.model, self.model.gap_tolerance);
+        let model = self.model;
+        let tolerance = self.model.gap_tolerance;
         let laws = model.friction_laws(self.state.time)?;
         scratch.places.clear();
         scratch.acting.clear();
@@ -72,7 +73,8 @@ impl Increments<'_> {
         scratch.at.resize(scratch.free.len(), 0.0);
         velocity.clone_from(&scratch.free);
         let mut row = Rows::new(model.dimension);
-        let (mut is_behind, mut dependence) = (false, Dependence::default());
+        let mut is_behind = false;
+        let mut dependence = Dependence::default();
         for round in 0..=ROUNDS {
             let gaps = self.gaps(velocity, scratch, &mut row, report)?;
             is_behind |= gaps.is_behind;
@@ -111,7 +113,9 @@ impl Increments<'_> {
         row: &mut Rows,
         report: &mut StepReport,
     ) -> Result<Gaps, Rejected> {
-        let (model, state, tolerance) = (self.model, self.state, self.model.gap_tolerance);
+        let model = self.model;
+        let state = self.state;
+        let tolerance = self.model.gap_tolerance;
         let Scratch { at, pairings, rows, loaded, .. } = scratch;
         let motion = Forward { state, before: self.before, velocity, dt: self.dt };
         motion.place(0.0, at);
@@ -145,7 +149,8 @@ impl Increments<'_> {
     /// The rows that impulses act along, those of the gaps and then of slips, with their last
     /// impulses.
     fn choose_rows(&self, laws: &[Vec<Law>], scratch: &mut Scratch) -> Result<(), Rejected> {
-        let (model, state) = (self.model, self.state);
+        let model = self.model;
+        let state = self.state;
         let Scratch { free, pairings, rows, impulses, places, acting, slips, along, kinds, .. } = scratch;
         places.clear();
         places.extend(active(pairings).filter(|&(k, p)| moves(model, rows[k].row(p))));
@@ -174,7 +179,8 @@ impl Increments<'_> {
 
     /// Solves the small problem of these rows.
     fn find_impulses(&self, dependence: &mut Dependence, scratch: &mut Scratch) -> Result<(), Rejected> {
-        let (model, dt) = (self.model, self.dt);
+        let model = self.model;
+        let dt = self.dt;
         let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, ties, .. } = scratch;
         let (matrix, mut right) = self.matrix(acting, at, ties)?;
         for (i, &(k, p)) in places.iter().enumerate() {
@@ -289,7 +295,8 @@ fn slip_into(
     (k, pair): (usize, &mut Pair),
     rows: &mut Rows,
 ) -> Result<(), Rejected> {
-    let (contact, mut at) = (&model.contacts[k], *pair);
+    let contact = &model.contacts[k];
+    let mut at = *pair;
     let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
     contact.kinematics.measure(&mut at, &state.y, rows).map_err(failed)?;
     rows.pop();

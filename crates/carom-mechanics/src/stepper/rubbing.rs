@@ -59,7 +59,9 @@ pub(super) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl It
     // and the motion of the other dofs along it.
     let part = |row: Row| -> (Vec<f64>, f64) {
         let of_gap = |dof: usize| normal.iter().find(|entry| entry.0 == dof).map_or(0.0, |entry| entry.1);
-        let (mut free, mut moved, d) = (Vec::new(), 0.0, model.dimension);
+        let mut free = Vec::new();
+        let mut moved = 0.0;
+        let d = model.dimension;
         for (node, h) in row.nodes.iter().zip(row.gradient.chunks_exact(d)) {
             let [of_e, of_t] = [e, t].map(|tangent| (0..d).map(|i| h[i] * tangent[i]).sum::<f64>());
             for (i, dof) in (d * node..).take(d).enumerate() {
@@ -84,7 +86,8 @@ pub(super) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl It
         return tangents.into_iter().take(slips.iter().filter(|&row| !is_constrained(row)).count());
     }
     let second = slips.row(1);
-    let ((e, e_moved), (t, t_moved)) = (part(first), part(second));
+    let (e, e_moved) = part(first);
+    let (t, t_moved) = part(second);
     let [a, b, mixed] = [dot(&e, &e), dot(&t, &t), dot(&e, &t)];
     let most = 0.5 * (a + b) + (0.5 * (a - b)).hypot(mixed);
     let rests = |[i, j]: Along| (i * e_moved + j * t_moved).abs() <= rest;

@@ -121,7 +121,8 @@ impl Closed {
     ) -> Result<Self, Rejected> {
         let rows = places.iter().map(|&(k, p)| ((k, p), gaps[k].row(p)));
         let normals = Constraints::plain(model.dimension, rows);
-        let (mut slips, mut laws) = (Rows::new(model.dimension), Vec::new());
+        let mut slips = Rows::new(model.dimension);
+        let mut laws = Vec::new();
         let of_contacts = model.friction_laws(state.time)?;
         for &(k, p) in &places {
             let contact = &model.contacts[k];
@@ -271,7 +272,8 @@ impl Closed {
         system: &mut System,
     ) -> Result<Motion, Rejected> {
         let mut ways = self.ways(state);
-        let (rates, still) = (self.slip_rates(&state.v), AT_REST * max_abs(&state.v));
+        let rates = self.slip_rates(&state.v);
+        let still = AT_REST * max_abs(&state.v);
         for (i, way) in ways.iter_mut().enumerate() {
             let friction_state = FrictionState::of(rates[i], still);
             let known = slid.get(i).copied().flatten();
@@ -322,7 +324,9 @@ impl Closed {
                 changed |= std::mem::replace(&mut ways[i].slip, new) != new;
             }
             let rub = |i: usize| {
-                let (way, law, p) = (ways[i], laws[i]?, motion.normal[i]);
+                let way = ways[i];
+                let law = laws[i]?;
+                let p = motion.normal[i];
                 if p >= 0.0 && way.friction_state == FrictionState::Stick {
                     return None;
                 }
@@ -384,7 +388,8 @@ impl Closed {
                 along.for_each(|(along, h)| *along -= factor * h);
             }
         }
-        let (mut slips, mut names) = (Rows::new(d), Vec::new());
+        let mut slips = Rows::new(d);
+        let mut names = Vec::new();
         for &i in &rubs {
             for (along, turns) in ways[i].prevented(d - 1) {
                 names.push((i, along, turns));
@@ -405,7 +410,8 @@ impl Closed {
             }
         }
         system.mass_with(model, &rows)?;
-        let (mut x, mut multipliers) = (vec![0.0; model.dofs()], Vec::new());
+        let mut x = vec![0.0; model.dofs()];
+        let mut multipliers = Vec::new();
         system.solve(model, [&forces, &targets], &mut x, &mut multipliers)?;
         let forces_held = multipliers.split_off(ways.len());
         let mut motion = Motion {

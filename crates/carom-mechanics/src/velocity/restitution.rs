@@ -154,7 +154,8 @@ fn settle(
         }
         let along =
             |rates: &[f64]| -rates.iter().zip(&motion.normal).map(|(s, p)| s * p).sum::<f64>() / reach;
-        let (size, slope) = (along(speeds), along(&gaps));
+        let size = along(speeds);
+        let slope = along(&gaps);
         if size <= 0.0 {
             return Ok(0.0);
         }

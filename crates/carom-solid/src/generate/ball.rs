@@ -45,10 +45,13 @@ pub fn ball(
     }
     let (half, layers) = counts(radius, size);
     let k = element.degree() as i64;
-    let (cube, height) = ((k * half) as f64, (k * layers) as f64);
+    let cube = (k * half) as f64;
+    let height = (k * layers) as f64;
     let place = |key: Key| {
         let q = [0, 1, 2].map(|i| key[i] as f64 / cube);
-        let (t, c, d) = (key[3] as f64 / height, rounded(q), direction(q));
+        let t = key[3] as f64 / height;
+        let c = rounded(q);
+        let d = direction(q);
         [0, 1, 2].map(|i| center[i] + radius * ((1.0 - t) * c[i] + t * d[i]))
     };
     let mut lattice = Lattice::new(element, place)?;

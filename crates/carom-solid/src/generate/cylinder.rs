@@ -32,10 +32,14 @@ pub fn cylinder(
     let (half, layers) = counts(radius, size);
     let (low, tall, up) = levels(height, size, cuts[2]);
     let k = element.degree() as i64;
-    let (square, ring, rise) = ((k * half) as f64, (k * layers) as f64, (k * up) as f64);
+    let square = (k * half) as f64;
+    let ring = (k * layers) as f64;
+    let rise = (k * up) as f64;
     let place = |key: Key| {
         let q = [0, 1].map(|i| key[i] as f64 / square);
-        let (t, c, d) = (key[3] as f64 / ring, rounded(q), direction(q));
+        let t = key[3] as f64 / ring;
+        let c = rounded(q);
+        let d = direction(q);
         let [x, y] = [0, 1].map(|i| radius * ((1.0 - t) * c[i] + t * d[i]));
         frame.place([x, y, low + tall * (key[2] as f64 / rise)])
     };
@@ -94,7 +98,9 @@ pub fn tube(
     let k = element.degree() as i64;
     let (quarter, layers) = tube_counts(inner, outer, size);
     let (low, tall, up) = levels(height, size, cuts[2]);
-    let (turn, thick, rise) = (k * quarter, (k * layers) as f64, (k * up) as f64);
+    let turn = k * quarter;
+    let thick = (k * layers) as f64;
+    let rise = (k * up) as f64;
     let place = |key: Key| {
         let radius = super::lerp(inner, outer, key[1] as f64 / thick);
         let [cos, sin] = on_circle(key[0], turn);
@@ -172,7 +178,8 @@ fn direction(q: [f64; 2]) -> [f64; 2] {
 /// The point of the unit circle at `at` of four times `quarter` equal steps, mirrored bitwise at
 /// both axes and the diagonals.
 fn on_circle(at: i64, quarter: i64) -> [f64; 2] {
-    let (turns, rest) = (at.div_euclid(quarter), at.rem_euclid(quarter));
+    let turns = at.div_euclid(quarter);
+    let rest = at.rem_euclid(quarter);
     let angle = |steps: i64| FRAC_PI_2 * steps as f64 / quarter as f64;
     let [cos, sin] = if 2 * rest <= quarter {
         [angle(rest).cos(), angle(rest).sin()]

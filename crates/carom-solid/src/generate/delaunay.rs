@@ -46,7 +46,8 @@ pub(super) fn fill(outline: &Outline, length: &dyn Fn(&[f64; 2]) -> f64) -> Resu
     }
     divide(&mut cdt, length).map_err(failed)?;
     let sides = outline.walks(&cdt);
-    let (mut points, mut triangles) = (positions(&cdt), inside(&cdt));
+    let mut points = positions(&cdt);
+    let mut triangles = inside(&cdt);
     let mut best = smallest_angle(&points, &triangles);
     let fixed: Vec<usize> = sides.iter().flatten().flatten().copied().collect();
     let mut moved = points.clone();

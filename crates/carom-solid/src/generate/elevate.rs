@@ -39,7 +39,8 @@ impl Circle {
     /// The point at fraction `t` of the shorter arc from `a` to `b`.
     fn between(&self, a: [f64; 2], b: [f64; 2], t: f64) -> [f64; 2] {
         let angle = |p: [f64; 2]| (p[1] - self.center[1]).atan2(p[0] - self.center[0]);
-        let (start, turn) = (angle(a), angle(b) - angle(a));
+        let start = angle(a);
+        let turn = angle(b) - angle(a);
         let turn = if turn > PI {
             turn - TAU
         } else if turn < -PI {
@@ -75,7 +76,8 @@ pub(super) fn elevate(skeleton: Skeleton, element: Element) -> Mesh {
             owner.insert(edge, cell);
             let [i, j] = key(edge);
             let inner = between.entry([i, j]).or_insert_with(|| {
-                let (a, b) = (nodes[i], nodes[j]);
+                let a = nodes[i];
+                let b = nodes[j];
                 let added = (1..k).map(|m| {
                     let t = m as f64 / k as f64;
                     match circles.get(&[i, j]) {

@@ -55,14 +55,16 @@ pub fn extrusion(plane: &Mesh, height: f64, layers: usize) -> Result<Mesh, MeshE
         }
     }
     let free = |name: &'static str, other| if plane.sides.contains_key(name) { other } else { name };
-    let (bottom, top) = (free("bottom", "base"), free("top", "lid"));
+    let bottom = free("bottom", "base");
+    let top = free("top", "lid");
     let mut mesh = mesh.into_mesh(|corners: [Key; 3]| {
         let ends = corners.map(|key| key[0]);
         match corners.map(|key| key[1]) {
             [0, 0, 0] => vec![bottom],
             heights if heights == [levels as i64; 3] => vec![top],
             _ => {
-                let (low, high) = (ends.into_iter().min(), ends.into_iter().max());
+                let low = ends.into_iter().min();
+                let high = ends.into_iter().max();
                 let edge = low.zip(high).map(|(low, high)| [low, high]);
                 edge.and_then(|edge| of_edge.get(&edge)).cloned().unwrap_or_default()
             }

@@ -79,8 +79,10 @@ fn cut(a: [f64; 2], b: [f64; 2], length: &dyn Fn(&[f64; 2]) -> f64) -> Vec<[f64;
     let at = |t: f64| [lerp(a[0], b[0], t), lerp(a[1], b[1], t)];
     // ∫ ds/h up to the ends of steps no longer than a quarter of the edge at their start (h is
     // Lipschitz: no step can miss it).
-    let (mut places, mut edges) = (vec![0.0], vec![0.0]);
-    let (mut t, mut sum) = (0.0, 0.0);
+    let mut places = vec![0.0];
+    let mut edges = vec![0.0];
+    let mut t = 0.0;
+    let mut sum = 0.0;
     while t < 1.0 {
         let next = (t + 0.25 * length(&at(t)) / whole).min(1.0);
         sum += whole * (next - t) / length(&at(0.5 * (t + next)));
@@ -119,7 +121,8 @@ pub fn outline(points: &[[f64; 2]]) -> Result<(), MeshError> {
     }
     for i in 0..n {
         for j in i + 1..n {
-            let (s, t) = (side(i), side(j));
+            let s = side(i);
+            let t = side(j);
             let meet = if j == i + 1 || (i == 0 && j == n - 1) {
                 // Neighbours share a point; their free ends must not lie on the other side.
                 let [a, b, c] = if j == i + 1 { [s[0], s[1], t[1]] } else { [t[0], t[1], s[1]] };
@@ -157,7 +160,8 @@ fn crosses(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> bool {
 
 /// Distance of a point from a segment.
 fn distance(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
-    let (u, v) = (minus(b, a), minus(p, a));
+    let u = minus(b, a);
+    let v = minus(p, a);
     let t = ((u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1])).clamp(0.0, 1.0);
     (v[0] - t * u[0]).hypot(v[1] - t * u[1])
 }

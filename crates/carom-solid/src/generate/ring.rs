@@ -48,7 +48,8 @@ pub fn ring(
         skeleton.points.extend((0..4 * quarter).map(node));
     }
     for k in 1..circles.len() {
-        let (m, n) = (circles[k - 1].1, circles[k].1);
+        let m = circles[k - 1].1;
+        let n = circles[k].1;
         let below = |i: usize| first[k - 1] + i % (4 * m);
         let above = |j: usize| first[k] + j % (4 * n);
         let strip = strip(m, n);
@@ -108,7 +109,8 @@ fn circles(inner: f64, outer: f64, size: f64) -> Vec<(f64, usize)> {
 /// Triangles between m edges of the inner and n of the outer quarter: each advances by one edge
 /// from nodes i and j, on the circle that lags behind; `true`: on the inner one.
 fn strip(m: usize, n: usize) -> Vec<(usize, usize, bool)> {
-    let (mut i, mut j) = (0, 0);
+    let mut i = 0;
+    let mut j = 0;
     let mut triangles = Vec::with_capacity(m + n);
     while i < m || j < n {
         let on_inner = (2 * i + 1) * n < (2 * j + 1) * m;
@@ -121,7 +123,8 @@ fn strip(m: usize, n: usize) -> Vec<(usize, usize, bool)> {
 /// The i-th of 4q equally spaced points of the unit circle counter-clockwise from (1, 0); the
 /// quadrants mirror each other bitwise.
 fn on_circle(q: usize, i: usize) -> [f64; 2] {
-    let (quadrant, i) = (i / q, i % q);
+    let quadrant = i / q;
+    let i = i % q;
     let at = |i: usize| {
         // From the nearer axis, so that x = y on the diagonal and the axes are exact.
         let (sin, cos) = (PI / 2.0 * i.min(q - i) as f64 / q as f64).sin_cos();

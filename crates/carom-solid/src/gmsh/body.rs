@@ -40,14 +40,16 @@ type Edges = HashMap<(usize, usize), Facet>;
 
 /// The edges of all cells; one between two cells occurs in both directions.
 fn edges(group: &Group<2>) -> Result<Edges, MshError> {
-    let (n, sides) = (group.element.nodes(), group.element.facets());
+    let n = group.element.nodes();
+    let sides = group.element.facets();
     let mut edges = Edges::with_capacity(group.cells.len() / n * sides.len());
     for (cell, nodes) in group.cells.chunks_exact(n).enumerate() {
         for side in sides {
             let facet = Facet { cell, nodes: side.iter().map(|&a| nodes[a]).collect() };
             if let Some(other) = edges.insert((facet.nodes[0], facet.nodes[1]), facet) {
                 let [start, end] = [other.nodes[0], other.nodes[1]].map(|n| group.node(n).tag);
-                let (a, b) = (group.rows[other.cell].tag, group.rows[cell].tag);
+                let a = group.rows[other.cell].tag;
+                let b = group.rows[cell].tag;
                 let fault = Fault::Overlap { name: group.name.to_owned(), a, b, start, end };
                 return Err(group.file.at(&group.rows[cell], fault));
             }
@@ -59,7 +61,8 @@ fn edges(group: &Group<2>) -> Result<Edges, MshError> {
             // The map is unordered: name the cells in the order of the file.
             let [a, b] = [facet.cell.min(other.cell), facet.cell.max(other.cell)].map(|c| group.rows[c]);
             let [start, end] = [start.min(end), start.max(end)].map(|n| group.node(n).tag);
-            let (a, at) = (format!("cell {}", a.tag), b);
+            let a = format!("cell {}", a.tag);
+            let at = b;
             let fault = Fault::EdgeNodes { a, b: format!("cell {}", b.tag), start, end };
             return Err(group.file.at(&at, fault));
         }
@@ -78,7 +81,8 @@ fn curves(group: &mut Group<2>, edges: &Edges) -> Result<BTreeMap<String, Vec<Fa
         };
         if facet.nodes != line && facet.nodes != reversed(line) {
             let [start, end] = [line[0], line[1]].map(|n| group.node(n).tag);
-            let (a, b) = (format!("curve \"{name}\""), format!("cell {}", group.rows[facet.cell].tag));
+            let a = format!("curve \"{name}\"");
+            let b = format!("cell {}", group.rows[facet.cell].tag);
             return Err(Fault::EdgeNodes { a, b, start, end });
         }
         Ok(place)

@@ -36,7 +36,9 @@ impl<'a, const D: usize> Group<'a, D> {
         let what = GROUPS[D.min(3)];
         file.known(D, std::iter::once(name).chain(file.regions.iter().map(String::as_str)))?;
         let mut element: Option<Element> = None;
-        let (mut rows, mut cells, mut regions) = (Vec::new(), Vec::new(), Vec::new());
+        let mut rows = Vec::new();
+        let mut cells = Vec::new();
+        let mut regions = Vec::new();
         for block in file.blocks(D, name) {
             let Some(row) = block.rows.first() else { continue };
             let name = || name.to_owned();
@@ -45,11 +47,13 @@ impl<'a, const D: usize> Group<'a, D> {
             };
             let first = *element.get_or_insert(this);
             if first.facets().len() != this.facets().len() {
-                let (kind, name) = (block.kind.described(), name());
+                let kind = block.kind.described();
+                let name = name();
                 return Err(file.at(row, Fault::MixedKinds { name, cell: row.tag, kind }));
             }
             if first != this {
-                let (order, before) = (this.degree(), first.degree());
+                let order = this.degree();
+                let before = first.degree();
                 return Err(file.at(row, Fault::MixedOrders { name: name(), cell: row.tag, order, before }));
             }
             let region = file.region(D, block, &name())?;
@@ -108,7 +112,9 @@ impl<'a, const D: usize> Group<'a, D> {
             let first = if D == 1 { 0.0 } else { x(0)[axis] };
             if let Some(i) = (0..self.used.len()).find(|&i| (x(i)[axis] - first).abs() > 1e-9 * size) {
                 let node = self.node(i);
-                let (name, value, axis) = (self.name.to_owned(), x(i)[axis], ['x', 'y', 'z'][axis]);
+                let name = self.name.to_owned();
+                let value = x(i)[axis];
+                let axis = ['x', 'y', 'z'][axis];
                 let fault = Fault::NotFlat { name, node: node.tag, axis, value, other: first };
                 return Err(self.file.at(&node, fault));
             }
@@ -143,9 +149,11 @@ impl<'a, const D: usize> Group<'a, D> {
                 (k + 1..end).map(move |l| (k, l))
             });
             for (k, l) in pairs {
-                let (a, b) = (column[k].min(column[l]), column[k].max(column[l]));
+                let a = column[k].min(column[l]);
+                let b = column[k].max(column[l]);
                 if (0..D).all(|d| (self.positions[a][d] - self.positions[b][d]).abs() <= near) {
-                    let (name, at) = (self.name.to_owned(), self.positions[b].to_vec());
+                    let name = self.name.to_owned();
+                    let at = self.positions[b].to_vec();
                     let fault = Fault::Coincident { name, a: self.node(a).tag, b: self.node(b).tag, at };
                     return Err(self.file.at(&self.node(b), fault));
                 }
@@ -169,7 +177,8 @@ impl<'a, const D: usize> Group<'a, D> {
         let own: HashMap<usize, usize> = self.used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
         let mut sides = BTreeMap::new();
         for name in self.file.names(D - 1) {
-            let (mut facets, mut seen) = (Vec::new(), HashSet::new());
+            let mut facets = Vec::new();
+            let mut seen = HashSet::new();
             let mut inside = 0;
             for (row, nodes) in self.file.blocks(D - 1, name).flat_map(Block::cells) {
                 // A cell that leaves the body is not a facet of it.

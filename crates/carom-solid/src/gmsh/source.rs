@@ -51,7 +51,8 @@ impl<'a> Source<'a> {
         if self.left() == 0 {
             return Ok(None);
         }
-        let (remaining, place) = (&self.bytes[self.at..], self.place());
+        let remaining = &self.bytes[self.at..];
+        let place = self.place();
         let end = remaining.iter().position(|b| *b == b'\n').unwrap_or(remaining.len());
         let text = std::str::from_utf8(remaining[..end].trim_ascii())
             .map_err(|_| self.unexpected("text", &remaining[..end]))?;

@@ -29,12 +29,14 @@ impl MshFile {
             Some(name) if self.names(2).contains(&name) => self.blocks(2, name).collect(),
             Some(name) => return Err(SurfaceError::File(MshError::whole(self.no_name(2, name)))),
         };
-        let (mut points, mut corners) = (Vec::new(), Vec::new());
+        let mut points = Vec::new();
+        let mut corners = Vec::new();
         let mut number = vec![usize::MAX; self.nodes.len()];
         for block in blocks {
             for (row, nodes) in block.cells() {
                 if block.kind.number != TRIANGLE {
-                    let (cell, kind) = (row.tag, block.kind.described());
+                    let cell = row.tag;
+                    let kind = block.kind.described();
                     return Err(SurfaceError::File(self.at(row, Fault::NoTriangle { cell, kind })));
                 }
                 let mut triangle = [0; 3];

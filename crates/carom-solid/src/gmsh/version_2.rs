@@ -64,7 +64,8 @@ pub(super) fn elements(source: &mut Source) -> Result<Vec<RawBlock>, MshError> {
         if source.encoding == Encoding::Text {
             let place = source.place();
             let row = Row::new(source.int(WITHIN)?, place);
-            let (kind, tags) = (kind(source, row.tag)?, tags(source)?);
+            let kind = kind(source, row.tag)?;
+            let tags = tags(source)?;
             cell(source, row, kind, tags, &mut blocks)?;
             source.end_row()?;
             found += 1;

@@ -76,7 +76,9 @@ pub(super) fn elements(source: &mut Source) -> Result<Vec<RawBlock>, MshError> {
     let mut found = 0;
     for _ in 0..count {
         let place = source.place();
-        let (dimension, owner, number) = (source.int(WITHIN)?, source.int(WITHIN)?, source.int(WITHIN)?);
+        let dimension = source.int(WITHIN)?;
+        let owner = source.int(WITHIN)?;
+        let number = source.int(WITHIN)?;
         let Some(kind) = CellType::of(number) else {
             return Err(MshError {
                 place,

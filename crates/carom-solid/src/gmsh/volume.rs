@@ -54,7 +54,8 @@ struct Facets {
 }
 
 fn facets(group: &Group<3>) -> Result<Facets, MshError> {
-    let (element, ends) = (group.element, group.element.facet_shape().corners());
+    let element = group.element;
+    let ends = group.element.facet_shape().corners();
     let mut open: BTreeMap<Corners, Facet> = BTreeMap::new();
     let mut closed: HashMap<Corners, [usize; 2]> = HashMap::new();
     for (cell, nodes) in group.cells.chunks_exact(element.nodes()).enumerate() {
@@ -62,7 +63,8 @@ fn facets(group: &Group<3>) -> Result<Facets, MshError> {
             let facet = Facet { cell, nodes: local.iter().map(|&a| nodes[a]).collect() };
             let key = key(&facet.nodes, ends);
             let at = |fault| Err(group.file.at(&group.rows[cell], fault));
-            let (name, tags) = (group.name.to_owned(), || key.iter().map(|&n| group.node(n).tag).collect());
+            let name = group.name.to_owned();
+            let tags = || key.iter().map(|&n| group.node(n).tag).collect();
             if let Some(others) = closed.get(&key) {
                 let cells = others.iter().chain([&cell]).map(|&c| group.rows[c].tag).collect();
                 return at(Fault::Crowded { name, cells, corners: tags() });
@@ -71,7 +73,8 @@ fn facets(group: &Group<3>) -> Result<Facets, MshError> {
                 open.insert(key, facet);
                 continue;
             };
-            let (a, b) = (group.rows[other.cell].tag, group.rows[cell].tag);
+            let a = group.rows[other.cell].tag;
+            let b = group.rows[cell].tag;
             // The cell after the first corner, in each direction.
             let next = |nodes: &[usize]| {
                 let first = nodes[..ends].iter().position(|n| *n == key[0]).unwrap_or_default();
@@ -81,7 +84,8 @@ fn facets(group: &Group<3>) -> Result<Facets, MshError> {
                 return at(Fault::SameSide { name, a, b, corners: tags() });
             }
             if !same(&other.nodes, &facet.nodes) {
-                let (a, b) = (format!("cell {a}"), format!("cell {b}"));
+                let a = format!("cell {a}");
+                let b = format!("cell {b}");
                 return at(Fault::FacetNodes { a, b, corners: tags() });
             }
             closed.insert(key, [other.cell, cell]);
@@ -136,7 +140,8 @@ fn surfaces(group: &mut Group<3>, facets: &Facets) -> Result<BTreeMap<String, Ve
         };
         if !same(&facet.nodes, nodes) {
             let corners = key.iter().map(|&n| group.node(n).tag).collect();
-            let (a, b) = (format!("surface \"{name}\""), format!("cell {}", group.rows[facet.cell].tag));
+            let a = format!("surface \"{name}\"");
+            let b = format!("cell {}", group.rows[facet.cell].tag);
             return Err(Fault::FacetNodes { a, b, corners });
         }
         Ok(Found::Boundary(facet))

@@ -129,7 +129,8 @@ fn facet(element: Element) -> Element {
 
 /// Lower and upper corner of the box around points; z = 0 in the plane.
 fn corners<'a>(places: impl Iterator<Item = &'a [f64]>) -> String {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
     for x in places {
         for i in 0..3 {
             let x = x.get(i).copied().unwrap_or(0.0);

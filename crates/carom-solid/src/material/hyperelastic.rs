@@ -73,7 +73,8 @@ pub trait Material<const D: usize>: Send + Sync {
         if let Some((energy, stress)) = self.at_four(&four(h))? {
             return Ok((energy.0, lanes(&stress)));
         }
-        let (mut energies, mut stresses) = ([0.0; LANES], [[[0.0; LANES]; D]; D]);
+        let mut energies = [0.0; LANES];
+        let mut stresses = [[[0.0; LANES]; D]; D];
         for l in 0..count {
             let point = self.at(&get(h, l))?;
             energies[l] = self.energy(&point);

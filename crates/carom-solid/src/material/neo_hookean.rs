@@ -77,7 +77,9 @@ impl NeoHookean {
     /// ∂P/∂F : dF = μ dF + Λ (F⁻ᵀ:dF) F⁻ᵀ + (μ − Λ ln J) F⁻ᵀ dFᵀ F⁻ᵀ.
     #[inline(always)]
     fn change_of<const D: usize, T: Real>(&self, p: &Point<D, T>, df: &Mat<D, T>) -> Mat<D, T> {
-        let (g, lambda, mu) = (p.inverse_transposed, T::of(self.lambda), T::of(self.mu));
+        let g = p.inverse_transposed;
+        let lambda = T::of(self.lambda);
+        let mu = T::of(self.mu);
         *df * mu + g * (lambda * g.double_dot(df)) + g * df.transposed() * g * (mu - lambda * p.ln_j)
     }
 }
@@ -109,7 +111,8 @@ impl<const D: usize> Material<D> for NeoHookean {
 
     #[inline(always)]
     fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
-        let (a_tilde, b_tilde) = (p.inverse_transposed.apply(a), p.inverse_transposed.apply(b));
+        let a_tilde = p.inverse_transposed.apply(a);
+        let b_tilde = p.inverse_transposed.apply(b);
         Mat::identity() * (self.mu * a.dot(b))
             + b_tilde.outer(&a_tilde) * (self.mu - self.lambda * p.ln_j)
             + a_tilde.outer(&b_tilde) * self.lambda

@@ -28,9 +28,11 @@ pub trait Thickness: Material<3> {
         let [[a, b], [c, d]] = h.0;
         let at = |across: f64| self.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]));
         let mut across = 0.0;
-        let (mut point, mut last) = (at(across)?, f64::INFINITY);
+        let mut point = at(across)?;
+        let mut last = f64::INFINITY;
         for _ in 0..100 {
-            let (stress, stiffness) = (self.stress(&point).0[2][2], self.tangent(&point, &E3, &E3).0[2][2]);
+            let stress = self.stress(&point).0[2][2];
+            let stiffness = self.tangent(&point, &E3, &E3).0[2][2];
             let mut step = stress / stiffness;
             // Converged to round-off: steps no longer shrink.
             let rounded = step.abs() >= last && last < 1e-9;
@@ -91,7 +93,8 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
     fn tangent(&self, point: &Self::Point, a: &Vector<2>, b: &Vector<2>) -> Mat<2> {
         let [a, b] = [a, b].map(|v| Vector([v[0], v[1], 0.0]));
         let coupled = |v: &Vector<3>| self.0.tangent(point, v, &E3).0.map(|row| row[2]);
-        let (left, right) = (coupled(&a), coupled(&b));
+        let left = coupled(&a);
+        let right = coupled(&b);
         let across = self.0.tangent(point, &E3, &E3).0[2][2];
         within(&self.0.tangent(point, &a, &b))
             - Vector([left[0], left[1]]).outer(&Vector([right[0], right[1]])) * (1.0 / across)
@@ -152,7 +155,9 @@ impl Thickness for NeoHookean {
         if excess <= -1.0 || excess.is_nan() {
             return Err(NotPositive(1.0 + excess));
         }
-        let (lambda, mu, ln_j) = (self.lambda, self.mu, excess.ln_1p());
+        let lambda = self.lambda;
+        let mu = self.mu;
+        let ln_j = excess.ln_1p();
         let mut s = -lambda * ln_j / (lambda + 2.0 * mu);
         let mut last = f64::INFINITY;
         for _ in 0..60 {

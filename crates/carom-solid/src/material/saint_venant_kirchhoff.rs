@@ -67,7 +67,8 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
 
     #[inline(always)]
     fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
-        let (fa, fb) = (p.f.apply(a), p.f.apply(b));
+        let fa = p.f.apply(a);
+        let fb = p.f.apply(b);
         Mat::identity() * a.dot(&p.second.apply(b))
             + fa.outer(&fb) * self.lambda
             + (fb.outer(&fa) + p.left * a.dot(b)) * self.mu

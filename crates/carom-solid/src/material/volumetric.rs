@@ -58,7 +58,8 @@ impl Volumetric {
     pub(crate) fn at(self, m: f64) -> [f64; 3] {
         match self {
             Self::Logarithmic(lambda) => {
-                let (logarithm, ratio) = (ln_1p(m)[0], 1.0 + m);
+                let logarithm = ln_1p(m)[0];
+                let ratio = 1.0 + m;
                 let [energy, pressure] = [0.5 * logarithm * logarithm, logarithm / ratio];
                 [energy, pressure, (1.0 - logarithm) / (ratio * ratio)].map(|part| lambda * part)
             }
@@ -131,7 +132,8 @@ impl<const D: usize> Material<D> for Swelling {
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
     #[inline(always)]
     fn tangent(&self, p: &OfSwelling<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
-        let (a, b) = (p.cofactor.apply(a), p.cofactor.apply(b));
+        let a = p.cofactor.apply(a);
+        let b = p.cofactor.apply(b);
         (a.outer(&b) - b.outer(&a)) * (1.0 / (1.0 + p.excess))
     }
 
@@ -249,7 +251,8 @@ impl<const D: usize> Material<D> for SmallSwelling {
 fn logarithmic_quotient(x: f64) -> [f64; 2] {
     // The terms omitted are below x⁸: round-off.
     if x.abs() < 0.01 {
-        let (mut value, mut slope) = (0.0, 0.0);
+        let mut value = 0.0;
+        let mut slope = 0.0;
         for k in (0..8_i32).rev() {
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
             slope = slope * x + value;

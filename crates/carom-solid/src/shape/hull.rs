@@ -90,7 +90,8 @@ impl Hull {
     pub fn bounds<'a, P: AsRef<[f64]> + ?Sized + 'a>(&self, position: impl Fn(usize) -> &'a P) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for weights in self.weights.chunks_exact(self.nodes) {
-            let (mut point, mut dimension) = ([0.0; 3], 0);
+            let mut point = [0.0; 3];
+            let mut dimension = 0;
             for (a, weight) in weights.iter().enumerate() {
                 let x = position(a).as_ref();
                 dimension = x.len();

@@ -46,8 +46,9 @@ pub fn line_shape(nodes: usize, xi: f64) -> LineShape {
             second: [1.0, 1.0, -2.0, 0.0],
         },
         4 => {
-            let (t, e, i) =
-                (3.0 * xi, (3.0 * xi - 1.0) * (3.0 * xi + 1.0) / 16.0, 9.0 / 16.0 * (1.0 - xi) * (1.0 + xi));
+            let t = 3.0 * xi;
+            let e = (3.0 * xi - 1.0) * (3.0 * xi + 1.0) / 16.0;
+            let i = 9.0 / 16.0 * (1.0 - xi) * (1.0 + xi);
             LineShape {
                 values: [(1.0 - xi) * e, (1.0 + xi) * e, (1.0 - t) * i, (1.0 + t) * i],
                 first: [

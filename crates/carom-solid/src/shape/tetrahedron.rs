@@ -36,7 +36,8 @@ const fn at<const K: usize>(x: usize, y: usize, z: usize) -> Vector<3> {
 /// P_n and its derivative.
 fn factor(degree: f64, n: usize, l: f64) -> (f64, f64) {
     (0..n).map(|m| m as f64).fold((1.0, 0.0), |(value, slope), m| {
-        let (term, rise) = ((degree * l - m) / (m + 1.0), degree / (m + 1.0));
+        let term = (degree * l - m) / (m + 1.0);
+        let rise = degree / (m + 1.0);
         (value * term, slope * term + value * rise)
     })
 }
@@ -44,7 +45,9 @@ fn factor(degree: f64, n: usize, l: f64) -> (f64, f64) {
 /// The factors of a node's shape function, with their derivatives.
 fn factors(degree: usize, node: &Vector<3>, xi: &Vector<3>) -> [(f64, f64); 4] {
     let barycentric = |x: &Vector<3>| [1.0 - x[0] - x[1] - x[2], x[0], x[1], x[2]];
-    let (of_node, here, degree) = (barycentric(node), barycentric(xi), degree as f64);
+    let of_node = barycentric(node);
+    let here = barycentric(xi);
+    let degree = degree as f64;
     std::array::from_fn(|i| factor(degree, (degree * of_node[i]).round() as usize, here[i]))
 }
 

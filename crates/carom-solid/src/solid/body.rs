@@ -19,7 +19,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
     }
 
     fn add_cells(&self, first: usize, locals: &[f64], sum: &mut [f64]) {
-        let (locals, sum) = (locals.as_chunks::<D>().0.as_chunks::<N>().0, sum.as_chunks_mut::<D>().0);
+        let locals = locals.as_chunks::<D>().0.as_chunks::<N>().0;
+        let sum = sum.as_chunks_mut::<D>().0;
         let cells = &self.mesh.cells.as_chunks::<N>().0[first..];
         for (nodes, local) in cells.iter().zip(locals) {
             for (node, local) in nodes.iter().zip(local) {
@@ -52,9 +53,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
     }
 
     fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64)) {
-        let (x, u) = (self.reference(cell), self.displacements(cell, y));
+        let x = self.reference(cell);
+        let u = self.displacements(cell, y);
         for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
-            let (values, local) = (S::values(xi), S::gradients(xi));
+            let values = S::values(xi);
+            let local = S::gradients(xi);
             let derivative = gradient(&x, &local);
             let inverse_transposed = derivative.inverse().transposed();
             let h = gradient(&u, &local.map(|g| inverse_transposed.apply(&g)));
@@ -92,7 +95,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
     }
 
     fn cell_bounds(&self, cell: usize, y: &[f64]) -> Bounds {
-        let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
+        let nodes = self.nodes(cell);
+        let y = y.as_chunks::<D>().0;
         let bounds = self.hull.bounds(|a| &y[nodes[a]]);
         bounds.grown(reference::MARGIN * bounds.size())
     }
@@ -246,7 +250,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Margin of one cell.
     fn margin(&self, cell: usize, y: &[f64]) -> Result<f64, Inverted> {
         if !self.may_invert(cell) {
-            let (nodes, y) = (self.nodes(cell), y.as_chunks::<D>().0);
+            let nodes = self.nodes(cell);
+            let y = y.as_chunks::<D>().0;
             let nodes = nodes.map(|node| Vector(y[node]));
             let margin = wide(
                 #[inline(always)]

@@ -132,14 +132,16 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     #[inline(always)]
     fn forces_of_four(&self, first: usize, y: &[f64], forces: &mut [f64], energies: &mut [f64]) -> bool {
         let count = energies.len();
-        let (reference, y) = (self.mesh.nodes.of_dimension::<D>(), y.as_chunks::<D>().0);
+        let reference = self.mesh.nodes.of_dimension::<D>();
+        let y = y.as_chunks::<D>().0;
         let cells = &self.mesh.cells.as_chunks::<N>().0[first..first + count];
         let mut u = [[[0.0; LANES]; D]; N];
         for l in 0..LANES {
             // The last cell again in lanes that are left over.
             let nodes = &cells[l.min(count - 1)];
             for a in 0..N {
-                let (now, before) = (&y[nodes[a]], &reference[nodes[a]]);
+                let now = &y[nodes[a]];
+                let before = &reference[nodes[a]];
                 for i in 0..D {
                     u[a][i][l] = now[i] - before[i];
                 }

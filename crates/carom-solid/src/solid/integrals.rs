@@ -175,7 +175,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         for m in 0..M {
             u[m] = self.displacements(cell, fields[m]);
         }
-        let (nodes, change) = (self.nodes(cell), change.as_chunks::<D>().0);
+        let nodes = self.nodes(cell);
+        let change = change.as_chunks::<D>().0;
         let mut du = [Vector::ZERO; N];
         for a in 0..N {
             du[a] = Vector(change[nodes[a]]);
@@ -218,7 +219,9 @@ pub(super) fn spread<const D: usize, const N: usize>(blocks: &Blocks<D, N>, tang
         for a in 0..=b {
             for i in 0..D {
                 for j in 0..D {
-                    let (row, column, value) = (a * D + i, b * D + j, sum(&blocks[b][a][i][j]));
+                    let row = a * D + i;
+                    let column = b * D + j;
+                    let value = sum(&blocks[b][a][i][j]);
                     tangent[row * N * D + column] = value;
                     tangent[column * N * D + row] = value;
                 }

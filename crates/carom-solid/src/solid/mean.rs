@@ -91,12 +91,17 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         force: &mut [f64],
     ) -> Result<f64, Inverted> {
         let none = [[[0.0; LANES]; D]; D];
-        let (mut stresses, mut cofactors) = ([none; BLOCKS], [none; BLOCKS]);
-        let (mut energy, mut swollen, mut cell_volume) = (0.0, 0.0, 0.0);
-        let (u, Place { points, inverse, volume }) = (self.displacements(cell, y), &self.places[cell]);
+        let mut stresses = [none; BLOCKS];
+        let mut cofactors = [none; BLOCKS];
+        let mut energy = 0.0;
+        let mut swollen = 0.0;
+        let mut cell_volume = 0.0;
+        let u = self.displacements(cell, y);
+        let Place { points, inverse, volume } = &self.places[cell];
         let points = &self.points[points.clone()];
         for ((points, stress), cofactor) in points.iter().zip(&mut stresses).zip(&mut cofactors) {
-            let (h, count) = (points.gradient(&u, inverse), points.count);
+            let h = points.gradient(&u, inverse);
+            let count = points.count;
             let inverted = |NotPositive(det_f)| Inverted { cell, det_f };
             let densities = law.stresses(&h, count, stress).map_err(inverted)?;
             let measures = mean.measure.stresses(&h, count, cofactor).map_err(inverted)?;
@@ -159,7 +164,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     ) -> Result<f64, Inverted> {
         let mut gradient = vec![0.0; N * D];
         let sum = self.between_of(&*mean.measure, cell, [before, now], &mut gradient)?;
-        let (volume, start) = (self.volume(cell), self.swelling(mean, cell, before, None)?.measure);
+        let volume = self.volume(cell);
+        let start = self.swelling(mean, cell, before, None)?.measure;
         let end = sum / volume;
         let [pressure, _] = mean.volumetric.between([start, end]);
         add(force, pressure, &gradient);

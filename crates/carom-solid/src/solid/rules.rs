@@ -24,7 +24,8 @@ const LAW: NeoHookean = NeoHookean { lambda: 5.0, mu: 1.0 };
 
 /// A smooth displacement and its gradient.
 fn moved<const D: usize>(x: &Vector<D>) -> (Vector<D>, Mat<D>) {
-    let (mut u, mut h) = (Vector::ZERO, Mat::ZERO);
+    let mut u = Vector::ZERO;
+    let mut h = Mat::ZERO;
     for i in 0..D {
         let j = (i + 1) % D;
         let phase = 1.5 * x[i] + 1.1 * x[j] + i as f64;
@@ -59,7 +60,8 @@ fn errors<const D: usize, const N: usize, S: Shape<D, N>>(
         let u = x.map(|x| moved(&x).0);
         for (k, degree) in [degree, exact, exact].into_iter().enumerate() {
             for (xi, weight) in S::Domain::rule(degree).iter() {
-                let (values, local) = (S::values(xi), S::gradients(xi));
+                let values = S::values(xi);
+                let local = S::gradients(xi);
                 let map = gradient(&x, &local);
                 let inverse_transposed = map.inverse().transposed();
                 let gradients = local.map(|g| inverse_transposed.apply(&g));
@@ -85,7 +87,8 @@ fn measure<const D: usize, const N: usize, S: Shape<D, N>>(element: Element) -> 
     } else {
         generate::cuboid(element, [0.0; 3], [1.0; 3], [2; 3])
     };
-    let (mesh, k) = (mesh.expect("it is a block"), S::DEGREE);
+    let mesh = mesh.expect("it is a block");
+    let k = S::DEGREE;
     let exact = if D == 2 && !S::Domain::TENSOR { 10 } else { 14 };
     let chosen = [2 * k, (2 * k).max(4 * (k - 1))];
     [false, true].map(|curved| {

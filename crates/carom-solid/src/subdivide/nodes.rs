@@ -22,7 +22,8 @@ impl<'a> Nodes<'a> {
 
     /// The node with these weights at the corners of a cell, there at Σ φᵃ Xᵃ.
     pub(super) fn at(&mut self, weights: &[usize], cell: usize, values: &[f64]) -> usize {
-        let (mesh, coordinates) = (self.mesh, &mut self.coordinates);
+        let mesh = self.mesh;
+        let coordinates = &mut self.coordinates;
         let corners = mesh.cell(cell).iter().copied().zip(weights.iter().copied());
         let mut place: Vec<_> = corners.filter(|(_, weight)| *weight > 0).collect();
         place.sort_unstable();

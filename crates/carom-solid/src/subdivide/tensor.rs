@@ -23,7 +23,8 @@ fn number<const R: usize>(at: At<R>, size: usize) -> usize {
 }
 
 pub(super) fn tensor<const R: usize, const N: usize, S: Shape<R, N>>(mesh: &Mesh, parts: usize) -> Mesh {
-    let (degree, count) = (S::DEGREE, S::DEGREE * parts);
+    let degree = S::DEGREE;
+    let count = S::DEGREE * parts;
     let corners = 1 << R;
     let steps = shape::lattice::<R, N, S>();
     let values: Vec<[f64; N]> = lattice::<R>(count + 1)

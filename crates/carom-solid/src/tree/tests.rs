@@ -14,7 +14,8 @@ fn polygon(count: usize, turned: f64, stretched: f64) -> impl Fn(usize) -> Bound
 impl Tree {
     /// Number of boxes that a query is compared with.
     fn visited(&self, query: &Bounds) -> usize {
-        let (mut k, mut count) = (0, 0);
+        let mut k = 0;
+        let mut count = 0;
         while let Some(node) = self.nodes.get(k) {
             count += 1;
             k = if node.bounds.meets(query) { k + 1 } else { node.end };
