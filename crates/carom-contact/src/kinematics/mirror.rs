@@ -1,8 +1,8 @@
 //! Facets in a plane of symmetry: they are no surface, since the mirror image of the body continues
 //! it there. Their nodes are fixed across the plane and not all of them along it.
 //!
-//! A node on the axis of a half model lies on such a facet to within round-off, and would be nearest
-//! to it.
+//! A node on the axis of a half model lies on such a facet to within round-off, and would be
+//! nearest to it.
 
 /// Differences of a coordinate, relative to the size of a facet, up to which it lies in a plane.
 const FLAT: f64 = 1e-9;
