@@ -77,6 +77,7 @@ pub struct NodeToFacet {
     /// The boundary of the body to which the secondary nodes belong, and the facets at each of its
     /// nodes.
     pub(super) own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
+    rubs: bool,
     tools: Mutex<Tools>,
 }
 
@@ -103,6 +104,7 @@ impl NodeToFacet {
             radii: Vec::new(),
             folds: None,
             own: None,
+            rubs: false,
             tools: Mutex::new(tools),
         }
     }
@@ -127,6 +129,13 @@ impl NodeToFacet {
         let tools = self.tools.get_mut().unwrap_or_else(PoisonError::into_inner);
         tools.search.reach_out(radii.iter().copied().fold(0.0, f64::max));
         Self { radii, ..self }
+    }
+
+    /// Contact with friction, if it `rubs`: a node over a joint has a pair with one facet, whose
+    /// slip it is.
+    #[must_use]
+    pub fn with_friction(self, rubs: bool) -> Self {
+        Self { rubs, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -506,9 +515,10 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        // The row of a round part is made of that with one facet (`tip_to_facet.rs`).
-        let has_rows_of_one = self.is_frozen() || !self.radii.is_empty();
-        if has_rows_of_one || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        // The row of a round part is made of that with one facet (`tip_to_facet.rs`), and of its
+        // own side a node may meet one facet of a joint only.
+        let is_apart = self.rubs || self.folds.is_some() || self.is_frozen() || !self.radii.is_empty();
+        if is_apart || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;

@@ -57,13 +57,17 @@ impl Bodies<'_> {
         let opposite = self.surface(secondary, &of_secondary.concat());
         let nodes = NodeToFacet::new(without(&secondary.nodes, &of_secondary[0]), side.clone(), detection)
             .with_point(point)
+            .with_friction(spec.friction.exists())
             .of_body(opposite.clone());
         if self.case.dimension == 1 || point == ContactPoint::Frozen {
             return Box::new(nodes);
         }
         let own = self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
-        let others = NodeToFacet::new(own.nodes, opposite, Detection::ClosestPoint);
-        Box::new(BothSides::new(nodes, others.with_allowed(own.depths).of_body(side)))
+        let others = NodeToFacet::new(own.nodes, opposite, Detection::ClosestPoint)
+            .with_allowed(own.depths)
+            .with_friction(spec.friction.exists())
+            .of_body(side);
+        Box::new(BothSides::new(nodes, others))
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {
@@ -76,9 +80,12 @@ impl Bodies<'_> {
         let earlier =
             [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
         let edges = EdgeToEdge::new([opposite.clone(), side.clone()], &earlier, self.reference);
+        let rubs = self.case.contacts[k].friction.exists();
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
+            .with_friction(rubs)
             .of_body(opposite.clone());
-        let others = NodeToPatch::new(own.nodes, opposite).with_allowed(own.depths).of_body(side);
+        let others =
+            NodeToPatch::new(own.nodes, opposite).with_allowed(own.depths).with_friction(rubs).of_body(side);
         WithEdges::new(BothSides::new(nodes, others), edges)
     }
 

@@ -73,6 +73,7 @@ pub struct NodeToPatch {
     pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
     /// The boundary of the body to which the secondary nodes belong.
     own: Option<Boundary>,
+    rubs: bool,
     tools: Mutex<Tools>,
 }
 
@@ -101,6 +102,7 @@ impl NodeToPatch {
             kept: Vec::new(),
             folds: None,
             own: None,
+            rubs: false,
             tools,
         }
     }
@@ -110,6 +112,13 @@ impl NodeToPatch {
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
         Self { allowed, ..self }
+    }
+
+    /// Contact with friction, if it `rubs`: a node over a joint has a pair with one facet, whose
+    /// slip it is.
+    #[must_use]
+    pub fn with_friction(self, rubs: bool) -> Self {
+        Self { rubs, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -520,7 +529,8 @@ impl OnFacets for NodeToPatch {
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);
-        if !(-AROUND_JOINT..=REACH).contains(&furthest) {
+        // Of its own side a node may meet one facet of a joint only.
+        if self.rubs || self.folds.is_some() || !(-AROUND_JOINT..=REACH).contains(&furthest) {
             return None;
         }
         let mut joints = 0..2 * patch.corners() as u8;
