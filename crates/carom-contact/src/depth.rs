@@ -37,7 +37,9 @@ impl Surface {
     /// of either facet at a convex joint, in front of both at a concave one, which is nearest to a
     /// remote point by round-off only.
     fn is_outside_joint(&self, facet: usize, xi: f64, point: Vector<2>, y: Places) -> bool {
-        let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
+        // In a plane of symmetry the mirror image continues the facet.
+        let neighbour = self.neighbour(facet, xi > 0.0).filter(|&neighbour| !self.is_mirror(neighbour));
+        let Some(neighbour) = neighbour else {
             return self.is_outside(facet, xi, point, y);
         };
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
