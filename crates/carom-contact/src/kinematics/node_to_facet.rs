@@ -77,7 +77,7 @@ pub struct NodeToFacet {
     /// The boundary of the body to which the secondary nodes belong, and the facets at each of its
     /// nodes.
     pub(super) own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
-    rubs: bool,
+    single: bool,
     tools: Mutex<Tools>,
 }
 
@@ -104,7 +104,7 @@ impl NodeToFacet {
             radii: Vec::new(),
             folds: None,
             own: None,
-            rubs: false,
+            single: false,
             tools: Mutex::new(tools),
         }
     }
@@ -131,11 +131,10 @@ impl NodeToFacet {
         Self { radii, ..self }
     }
 
-    /// Contact with friction, if it `rubs`: a node over a joint has a pair with one facet, whose
-    /// slip it is.
+    /// Contact in which a node over a joint has a pair with one facet, if it is `single`.
     #[must_use]
-    pub fn with_friction(self, rubs: bool) -> Self {
-        Self { rubs, ..self }
+    pub fn with_single_facets(self, single: bool) -> Self {
+        Self { single, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -515,14 +514,18 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        // The row of a round part is made of that with one facet (`tip_to_facet.rs`), and of its
-        // own side a node may meet one facet of a joint only.
-        let is_apart = self.rubs || self.folds.is_some() || self.is_frozen() || !self.radii.is_empty();
-        if is_apart || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        // The row of a round part is made of that with one facet (`tip_to_facet.rs`).
+        let is_single = self.single || self.is_frozen() || !self.radii.is_empty();
+        if is_single || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;
         let joint = u8::from(forward);
+        // Of its own side a node may meet one facet of a joint only.
+        let next = self.primary.neighbour(pair.facet, forward)?;
+        if self.excludes(self.secondary[pair.node], next) {
+            return None;
+        }
         let is_over = self.past_joint(pair, joint, y) <= AT_JOINT;
         (is_over && self.is_blunt(pair.facet, joint, y)).then_some(joint)
     }

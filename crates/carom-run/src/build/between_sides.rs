@@ -51,13 +51,15 @@ impl Bodies<'_> {
             case::ContactPoint::Closest => ContactPoint::Closest,
             case::ContactPoint::Frozen => ContactPoint::Frozen,
         };
+        // Springs chatter, and slips of the mean do not converge in load steps.
+        let single = spec.friction.exists() || spec.enforcement == case::Enforcement::Penalty;
         let of_secondary = self.siblings(k, secondary.part, Which::Secondary);
         let of_primary = self.siblings(k, primary.part, Which::Primary);
         let side = self.surface(primary, &of_primary.concat());
         let opposite = self.surface(secondary, &of_secondary.concat());
         let nodes = NodeToFacet::new(without(&secondary.nodes, &of_secondary[0]), side.clone(), detection)
             .with_point(point)
-            .with_friction(spec.friction.exists())
+            .with_single_facets(single)
             .of_body(opposite.clone());
         if self.case.dimension == 1 || point == ContactPoint::Frozen {
             return Box::new(nodes);
@@ -65,7 +67,7 @@ impl Bodies<'_> {
         let own = self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
         let others = NodeToFacet::new(own.nodes, opposite, Detection::ClosestPoint)
             .with_allowed(own.depths)
-            .with_friction(spec.friction.exists())
+            .with_single_facets(single)
             .of_body(side);
         Box::new(BothSides::new(nodes, others))
     }
@@ -80,12 +82,13 @@ impl Bodies<'_> {
         let earlier =
             [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
         let edges = EdgeToEdge::new([opposite.clone(), side.clone()], &earlier, self.reference);
-        let rubs = self.case.contacts[k].friction.exists();
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
-            .with_friction(rubs)
+            .with_single_facets(true)
             .of_body(opposite.clone());
-        let others =
-            NodeToPatch::new(own.nodes, opposite).with_allowed(own.depths).with_friction(rubs).of_body(side);
+        let others = NodeToPatch::new(own.nodes, opposite)
+            .with_allowed(own.depths)
+            .with_single_facets(true)
+            .of_body(side);
         WithEdges::new(BothSides::new(nodes, others), edges)
     }
 

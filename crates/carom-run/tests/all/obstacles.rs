@@ -179,10 +179,10 @@ fn an_obstacle_does_not_pass_between_nodes() {
             &format!("contact.rigid.primary={obstacle}"),
         ];
         let mut sim = Setup::new(&Case::from_text(FALLING, &sets).unwrap()).start().unwrap();
-        let stopped = (0..30).find_map(|_| sim.step().err()).unwrap();
-        let Stopped::NoStep { rejected, .. } = stopped else { panic!("{stopped}") };
-        let Rejected::Penetration { what, depth, limit, .. } = &rejected else { panic!("{rejected}") };
-        assert!(what.contains("obstacle") && depth > limit && (limit - 0.03125).abs() < 1e-12, "{rejected}");
+        (0..30).for_each(|_| drop(sim.step().unwrap()));
+        // Its convex part has a row between the nodes, whose gap is closed to round-off.
+        let pressed = sim.state().impulses[0][1];
+        assert!(pressed > 0.0, "{obstacle}: {pressed:e}");
     }
 }
 
@@ -196,7 +196,7 @@ fn a_pair_of_a_piece_that_is_not_there_belongs_to_another_model() {
     long.step().unwrap();
     let mut short = start(FLOORS[1]);
     let error = short.restore(long.state().clone()).unwrap_err().to_string();
-    assert!(error.contains("facet 2 of the primary of contact \"floor\", which has 1"), "{error}");
+    assert!(error.contains("node 12 of contact \"floor\" with 12 nodes"), "{error}");
     assert!(start(FLOORS[2]).restore(long.state().clone()).is_ok());
 }
 

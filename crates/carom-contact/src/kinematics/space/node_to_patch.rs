@@ -73,7 +73,7 @@ pub struct NodeToPatch {
     pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
     /// The boundary of the body to which the secondary nodes belong.
     own: Option<Boundary>,
-    rubs: bool,
+    single: bool,
     tools: Mutex<Tools>,
 }
 
@@ -102,7 +102,7 @@ impl NodeToPatch {
             kept: Vec::new(),
             folds: None,
             own: None,
-            rubs: false,
+            single: false,
             tools,
         }
     }
@@ -114,11 +114,10 @@ impl NodeToPatch {
         Self { allowed, ..self }
     }
 
-    /// Contact with friction, if it `rubs`: a node over a joint has a pair with one facet, whose
-    /// slip it is.
+    /// Contact in which a node over a joint has a pair with one facet, if it is `single`.
     #[must_use]
-    pub fn with_friction(self, rubs: bool) -> Self {
-        Self { rubs, ..self }
+    pub fn with_single_facets(self, single: bool) -> Self {
+        Self { single, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -530,7 +529,7 @@ impl OnFacets for NodeToPatch {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);
         // Of its own side a node may meet one facet of a joint only.
-        if self.rubs || self.folds.is_some() || !(-AROUND_JOINT..=REACH).contains(&furthest) {
+        if self.single || self.folds.is_some() || !(-AROUND_JOINT..=REACH).contains(&furthest) {
             return None;
         }
         let mut joints = 0..2 * patch.corners() as u8;
