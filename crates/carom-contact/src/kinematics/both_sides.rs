@@ -35,7 +35,7 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
 /// Cosine of the angle, 10°, up to which two facets count as parallel.
-const PARALLEL: f64 = 0.985;
+pub(super) const PARALLEL: f64 = 0.985;
 
 /// Nodes of a side with the depth that each may have without contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ impl BothSides<NodeToFacet> {
     /// A side against itself: its nodes in the role of the later place, and those in the role of
     /// the earlier one, whose depth is zero at corners; `piece`: the connected piece of its body to
     /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
-    /// over all nodes.
+    /// over all nodes; `single`: whether a node over a joint has a pair with one facet.
     pub fn of_itself(
         side: &Surface,
         nodes: Vec<usize>,
@@ -70,11 +70,12 @@ impl BothSides<NodeToFacet> {
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
+        single: bool,
     ) -> Self {
         let folds = Arc::new(Folds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
             let nodes = NodeToFacet::new(nodes, side.clone(), Detection::ClosestPoint);
-            nodes.of_body(side.clone()).folding(folds.clone(), which)
+            nodes.with_single_facets(single).of_body(side.clone()).folding(folds.clone(), which)
         };
         Self::new(of(nodes, Side::Later), of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths))
     }

@@ -1,10 +1,14 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
+use carom_algebra::Vector;
+
+use super::both_sides::PARALLEL;
 use super::facets::{Facets, OnFacet};
 use super::facing::{Closest, REACH, Reached};
 use super::joint::AT_JOINT;
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
+use super::surface::Surface;
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
@@ -148,16 +152,25 @@ impl NodeToFacet {
     }
 
     /// Whether a node that is no corner itself meets a corner of the primary, which the other
-    /// direction of contact keeps out: with one of the facets there it would push to one side.
+    /// direction of contact keeps out: with one of the facets there it would push to one side. Where
+    /// a facet at the corner is parallel to one at the node, the corner is left to the node
+    /// (`both_sides.rs`).
     fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
         let forward = xi > 0.0;
         let Some((own, around)) = &self.own else { return false };
+        let Some(around) = around.get(&node) else { return false };
         let Some(next) = self.primary.neighbour(facet, forward) else { return false };
         let [first, second] = if forward { [facet, next] } else { [next, facet] };
-        let is_at_corner = self.primary.is_corner(first, second, y);
-        let is_sharp =
-            |around: &[usize]| around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
-        is_at_corner && around.get(&node).is_some_and(|around| around.len() < 2 || !is_sharp(around))
+        if !self.primary.is_corner(first, second, y) {
+            return false;
+        }
+        let is_sharp = || around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
+        let normals = |surface: &Surface, facets: &[usize]| -> Vec<Vector<2>> {
+            facets.iter().map(|&facet| surface.facet(facet).at(y, 0.0).normal).collect()
+        };
+        let there = normals(&self.primary, &[first, second]);
+        let is_parallel = |own: &Vector<2>| there.iter().any(|other| own.dot(other) < -PARALLEL);
+        !normals(own, around).iter().any(is_parallel) && (around.len() < 2 || !is_sharp())
     }
 
     /// Where a node that has pairs enters the side at another place: neither at the facets of its

@@ -4,6 +4,8 @@
 //! A node on the axis of a half model lies on such a facet to within round-off, and would be
 //! nearest to it.
 
+use carom_algebra::Vector;
+
 /// Differences of a coordinate, relative to the size of a facet, up to which it lies in a plane.
 const FLAT: f64 = 1e-9;
 
@@ -28,6 +30,11 @@ pub(crate) fn is_mirror(
         |axis: usize| extent(axis) <= FLAT * size && nodes.iter().all(|&node| is_fixed(node, axis));
     let is_held = |node: &usize| (0..dimension).all(|axis| is_fixed(*node, axis));
     (0..dimension).any(is_across) && !nodes.iter().all(is_held)
+}
+
+/// A vector without twice its component along a direction of length one.
+pub(super) fn reflected<const D: usize>(vector: Vector<D>, direction: Vector<D>) -> Vector<D> {
+    vector - direction * (2.0 * vector.dot(&direction))
 }
 
 #[cfg(test)]

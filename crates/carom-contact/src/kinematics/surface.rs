@@ -3,11 +3,12 @@
 
 use std::collections::HashMap;
 
+use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use super::apart::Apart;
 use super::facets::Facets;
-use super::mirror::is_mirror;
+use super::mirror::{is_mirror, reflected};
 use super::projection::Facet;
 use crate::places::Places;
 
@@ -176,10 +177,18 @@ impl Surface {
         })
     }
 
-    /// The kink between a facet and the one that follows it.
+    /// The kink between a facet and the one that follows it. Behind a plane of symmetry the mirror
+    /// image of the facet follows.
     pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> Kink {
         let here = self.facet(facet).at(y, 1.0).tangent;
         let there = self.facet(next).at(y, -1.0).tangent;
+        let mirrored = |tangent, along: Vector<2>| reflected(tangent, along * along.norm().recip());
+        let [here, there] = match [facet, next].map(|facet| self.is_mirror(facet)) {
+            [false, false] => [here, there],
+            [false, true] => [here, mirrored(here, there)],
+            [true, false] => [mirrored(there, here), there],
+            [true, true] => [here, here],
+        };
         let size = here.norm() * there.norm();
         let sine = (here[0] * there[1] - here[1] * there[0]) / size;
         Kink { cosine: here.dot(&there) / size, sine }

@@ -35,7 +35,7 @@ impl Bodies<'_> {
     pub(super) fn kinematics(&self, k: usize, secondary: &Side, primary: &Side) -> Box<dyn Kinematics> {
         match (self.case.dimension, primary.part == secondary.part) {
             (3, true) => Box::new(self.itself_in_space(secondary)),
-            (_, true) => Box::new(self.itself(secondary)),
+            (_, true) => Box::new(self.itself(k, secondary)),
             (3, false) => Box::new(self.in_space(k, secondary, primary)),
             (_, false) => self.in_the_plane(k, secondary, primary),
         }
@@ -51,8 +51,7 @@ impl Bodies<'_> {
             case::ContactPoint::Closest => ContactPoint::Closest,
             case::ContactPoint::Frozen => ContactPoint::Frozen,
         };
-        // Springs chatter, and slips of the mean do not converge in load steps.
-        let single = spec.friction.exists() || spec.enforcement == case::Enforcement::Penalty;
+        let single = self.has_single_facets(k);
         let of_secondary = self.siblings(k, secondary.part, Which::Secondary);
         let of_primary = self.siblings(k, primary.part, Which::Primary);
         let side = self.surface(primary, &of_primary.concat());
@@ -105,12 +104,28 @@ impl Bodies<'_> {
         Box::new(WithTips::new(obstacle, tips))
     }
 
-    fn itself(&self, side: &Side) -> BothSides<NodeToFacet> {
+    /// Whether a node over a joint has a pair with one facet: springs chatter, and slips of the mean
+    /// do not converge in load steps.
+    fn has_single_facets(&self, k: usize) -> bool {
+        let spec = &self.case.contacts[k];
+        spec.friction.exists() || spec.enforcement == case::Enforcement::Penalty
+    }
+
+    fn itself(&self, k: usize, side: &Side) -> BothSides<NodeToFacet> {
         let surface = self.surface(side, &[]);
         let earlier = self.others(side, &[], side, &surface.corners(self.reference));
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
-        BothSides::of_itself(&surface, side.nodes.clone(), earlier, &pieces, part.first_node, self.reference)
+        let single = self.has_single_facets(k);
+        BothSides::of_itself(
+            &surface,
+            side.nodes.clone(),
+            earlier,
+            &pieces,
+            part.first_node,
+            self.reference,
+            single,
+        )
     }
 
     fn itself_in_space(&self, side: &Side) -> WithEdges {

@@ -37,7 +37,6 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 /// With multipliers and springs, symmetric tangents and those of a discrete gradient; the contact
 /// begins and is projected within the run.
 #[test]
-#[ignore = "since ADR 88 springs chatter apart: force 1.3e-2, place 9e-4 between the solvers"]
 fn an_impact_in_the_plane_has_the_same_history() {
     let text = include_str!("../../../../cases/impact/impact.toml");
     let coarse = [

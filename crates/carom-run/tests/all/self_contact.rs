@@ -28,6 +28,8 @@ fn strips(bodies: &str, between: &str) -> Case {
         material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.0 }}]
         contact = [{{ name = "joint", {between} }}]
         time = {{ end = 8.0, step = 0.05, scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }} }}
+        # Where a node crosses a joint, what the iteration leaves depends on the numbers of nodes.
+        newton = {{ tolerance = 1e-12 }}
         {bodies}
         # Tolerances are relative to the largest body: it is the same with one body and with two.
         [[body]]
@@ -54,7 +56,6 @@ fn body(name: &str, surface: &str) -> String {
 }
 
 #[test]
-#[ignore = "since ADR 88 joints of bodies and pieces differ by 2.7e-12, more than 1e-12"]
 fn pieces_of_one_body_move_like_bodies() {
     let one = strips(&body("both", "both"), r#"between = ["both"]"#);
     let two = strips(
@@ -68,7 +69,6 @@ fn pieces_of_one_body_move_like_bodies() {
 /// meet has no choice of what else to press on. When the first one moves slowly all nodes stick at
 /// first, with slips that are round-off.
 #[test]
-#[ignore = "since ADR 88 pieces that rub have joints and bodies have none: 1e-7"]
 fn pieces_of_one_body_rub_like_bodies() {
     for (speed, work) in [("0.06", -1.87e-4), ("0.02", -1.95e-7)] {
         rub_like_bodies(speed, work);

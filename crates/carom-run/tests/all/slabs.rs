@@ -105,7 +105,6 @@ fn impacts_of_a_ring_and_of_a_corner_as_slabs_are_those_of_the_plane() {
 /// T6 cells, but both approach the same impact. Impulse and fall of the disc's centre; the depth of
 /// the block below the disc, where single nodes press, is the same to 1 %.
 #[test]
-#[ignore = "since ADR 88 a node lies 2.88e-7 deep, limit 2.69e-7: the run stops"]
 fn an_impact_of_tetrahedra_has_the_depth_and_the_impulse_of_the_plane() {
     let figures = |sim: &Simulation, d: usize| {
         let (model, y) = (sim.model(), &sim.state().y);

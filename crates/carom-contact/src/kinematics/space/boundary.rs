@@ -12,7 +12,7 @@ use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
-use crate::kinematics::mirror::is_mirror;
+use crate::kinematics::mirror::{is_mirror, reflected};
 use crate::kinematics::{Depth, Facets, OnFacet};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
@@ -232,15 +232,29 @@ impl Boundary {
     }
 
     /// Outward normals on both sides of an edge of a facet, at the share s of its length from its
-    /// first corner.
+    /// first corner. Behind a plane of symmetry the mirror image of the facet follows.
     pub(crate) fn normals_at_edge(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> [Vector<3>; 2] {
         let own = self.patch(facet);
         let here = own.at(y, own.along(edge, s)).normal;
-        let there = self.neighbours[facet][edge].map(|neighbour| {
-            let patch = self.patch(neighbour.facet);
-            patch.at(y, patch.along(neighbour.edge, 1.0 - s)).normal
-        });
-        [here, there.unwrap_or(here)]
+        let Some(neighbour) = self.neighbours[facet][edge] else { return [here, here] };
+        let patch = self.patch(neighbour.facet);
+        let there = patch.at(y, patch.along(neighbour.edge, 1.0 - s)).normal;
+        match [facet, neighbour.facet].map(|facet| self.is_mirror(facet)) {
+            [false, false] => [here, there],
+            [false, true] => [here, reflected(here, there)],
+            [true, false] => [reflected(there, here), there],
+            [true, true] => [here, here],
+        }
+    }
+
+    /// Whether the boundary goes on inside a facet at a point of it that is nearest to another
+    /// point: on an edge the mirror image may follow.
+    pub(super) fn is_within(&self, facet: usize, at: Feature) -> bool {
+        match at {
+            Feature::Inside => true,
+            Feature::Edge(edge) => self.across(facet, edge).is_some_and(|other| self.is_mirror(other)),
+            Feature::Corner(_) => false,
+        }
     }
 
     /// Whether an edge of a facet is sharp: convex, with a kink of more than 30°.
@@ -281,15 +295,11 @@ impl Boundary {
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
     }
 
-    /// Nodes of the side at corners and on sharp convex edges, ascending, but for those on an edge
-    /// between the side and a plane of symmetry: the mirror image continues the side there.
+    /// Nodes of the side at corners and on sharp convex edges, ascending.
     pub fn nodes_of_sharp_edges(&self, y: &[f64]) -> Vec<usize> {
         let of_edge = |EdgeOfFacet { facet, edge }: EdgeOfFacet| {
             let (nodes, count) = self.shape.edge(edge);
-            let nodes = nodes[..count].iter().map(|&node| self.patch(facet).nodes[node]);
-            let is_continued =
-                self.is_mirror(facet) || self.across(facet, edge).is_some_and(|other| self.is_mirror(other));
-            if is_continued { Vec::new() } else { nodes.collect() }
+            nodes.into_iter().take(count).map(move |node| self.patch(facet).nodes[node])
         };
         let mut nodes: Vec<usize> = self.sharp_edges(y).into_iter().flat_map(of_edge).collect();
         nodes.extend(self.corners(y));
@@ -363,11 +373,14 @@ impl Boundary {
         Offset { vector: point - at.position, normal }
     }
 
-    /// Sum of the normals at a corner, weighted with the facets' angles.
+    /// Sum of the normals at a corner, weighted with the facets' angles, with those of mirror images.
     fn normal_at_corner(&self, node: usize, y: &[f64]) -> Vector<3> {
         let mut sum = Vector::ZERO;
         let count = self.shape.corners();
         for &facet in self.around.get(&node).into_iter().flatten() {
+            if self.is_mirror(facet) {
+                continue;
+            }
             let patch = self.patch(facet);
             let Some(corner) = patch.nodes[..count].iter().position(|&n| n == node) else { continue };
             let at = patch.at(y, patch.corner(corner));
@@ -380,9 +393,14 @@ impl Boundary {
             let angle = cross(out, back).norm().atan2(out.dot(&back));
             sum += at.normal * angle;
         }
+        for &facet in self.facets_around(node).iter().filter(|&&facet| self.is_mirror(facet)) {
+            let across = self.middle(facet, y).normal;
+            sum -= across * sum.dot(&across);
+        }
         sum
     }
 }
+
 
 impl Facets<3> for Boundary {
     fn shape(&self) -> FacetShape {

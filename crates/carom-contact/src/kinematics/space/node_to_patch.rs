@@ -23,7 +23,7 @@ use super::boundary::Boundary;
 use super::crossing::SEPARATION;
 use super::folds::PatchFolds;
 use super::gap::PatchGap;
-use super::patch::{Feature, PatchPoint, WANDER, cross, place};
+use super::patch::{PatchPoint, WANDER, cross, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Next, Sliding};
@@ -240,7 +240,7 @@ impl NodeToPatch {
             }
             let found = self.primary.patch(facet).nearest(y, from);
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
-            if found.at == Feature::Inside && found.distance < least {
+            if self.primary.is_within(facet, found.at) && found.distance < least {
                 best = Some((facet, found.distance, found.xi));
             }
         }
