@@ -1,20 +1,24 @@
 //! Facets in a plane of symmetry: they are no surface, since the mirror image of the body continues
-//! it there. Their nodes are fixed across the plane and not all of them along it.
+//! it there. Their nodes are fixed across the plane and not all of them along it, and no body lies
+//! on both sides of it: a face on rollers beyond which another body reaches is a surface.
 //!
 //! A node on the axis of a half model lies on such a facet to within round-off, and would be
 //! nearest to it.
 
 use carom_algebra::Vector;
+use carom_solid::Bounds;
 
 /// Differences of a coordinate, relative to the size of a facet, up to which it lies in a plane.
 const FLAT: f64 = 1e-9;
 
 /// Whether a facet lies in a plane of symmetry at the positions `y`, flat over all nodes with
-/// `dimension` components each; `is_fixed`: whether a node is fixed along an axis.
+/// `dimension` components each; `bodies`: a box around all bodies; `is_fixed`: whether a node is
+/// fixed along an axis.
 pub(crate) fn is_mirror(
     nodes: &[usize],
     y: &[f64],
     dimension: usize,
+    bodies: &Bounds,
     is_fixed: &impl Fn(usize, usize) -> bool,
 ) -> bool {
     if nodes.len() < 2 {
@@ -26,8 +30,15 @@ pub(crate) fn is_mirror(
         along.fold(f64::NEG_INFINITY, f64::max) - least
     };
     let size = (0..dimension).map(extent).fold(0.0, f64::max);
-    let is_across =
-        |axis: usize| extent(axis) <= FLAT * size && nodes.iter().all(|&node| is_fixed(node, axis));
+    let is_at_end = |axis: usize| {
+        let at = y[dimension * nodes[0] + axis];
+        let [below, above] = [at - bodies.low()[axis], bodies.high()[axis] - at];
+        below.min(above) <= FLAT * size
+    };
+    let is_across = |axis: usize| {
+        let is_flat = extent(axis) <= FLAT * size;
+        is_flat && is_at_end(axis) && nodes.iter().all(|&node| is_fixed(node, axis))
+    };
     let is_held = |node: &usize| (0..dimension).all(|axis| is_fixed(*node, axis));
     (0..dimension).any(is_across) && !nodes.iter().all(is_held)
 }
@@ -44,11 +55,15 @@ mod tests {
     #[test]
     fn an_edge_on_the_axis_is_no_surface_if_it_may_slide_along_it() {
         let y = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let bodies = y.chunks(2).collect();
         let across = |_: usize, axis: usize| axis == 0;
-        assert!(is_mirror(&[0, 1], &y, 2, &across));
+        assert!(is_mirror(&[0, 1], &y, 2, &bodies, &across));
         // Not the edge beside it, nor one that is held, nor a free one.
-        assert!(!is_mirror(&[1, 2], &y, 2, &across));
-        assert!(!is_mirror(&[0, 1], &y, 2, &|_, _| true));
-        assert!(!is_mirror(&[0, 1], &y, 2, &|_, _| false));
+        assert!(!is_mirror(&[1, 2], &y, 2, &bodies, &across));
+        assert!(!is_mirror(&[0, 1], &y, 2, &bodies, &|_, _| true));
+        assert!(!is_mirror(&[0, 1], &y, 2, &bodies, &|_, _| false));
+        // Nor one beyond which another body reaches.
+        let beyond = [[-0.1, 0.0], [1.0, 1.0]].iter().collect();
+        assert!(!is_mirror(&[0, 1], &y, 2, &beyond, &across));
     }
 }

@@ -90,12 +90,17 @@ impl Surface {
         }
     }
 
-    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `is_fixed`: whether a
-    /// node is fixed along an axis.
+    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `bodies`: a box around
+    /// all bodies; `is_fixed`: whether a node is fixed along an axis.
     #[must_use]
-    pub fn with_mirrors(mut self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Self {
+    pub fn with_mirrors(
+        mut self,
+        y: &[f64],
+        bodies: &Bounds,
+        is_fixed: impl Fn(usize, usize) -> bool,
+    ) -> Self {
         let dimension = self.shape.dimension();
-        let is_mirror = |facet: &[usize]| is_mirror(facet, y, dimension, &is_fixed);
+        let is_mirror = |facet: &[usize]| is_mirror(facet, y, dimension, bodies, &is_fixed);
         self.mirrors = self.nodes.chunks_exact(self.shape.nodes()).map(is_mirror).collect();
         self
     }

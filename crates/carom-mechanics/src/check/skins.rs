@@ -2,7 +2,7 @@
 
 use carom_contact::{Boundary, ClosedSurface, Depth, InsideItself, Side, Skin, Surface};
 
-use crate::model::{BodyInstance, Model};
+use crate::model::{BodyInstance, Model, bounds};
 
 /// The boundary of a body.
 #[derive(Debug)]
@@ -130,14 +130,16 @@ fn plane_surface(model: &Model, part: &BodyInstance) -> Option<Surface> {
     let shape = Some(part.body.mesh().element.facet_shape()).filter(|shape| shape.dimension() == 2)?;
     let facets = skin_facets(part);
     let surface = Surface::new(shape, &facets, &vec![1.0; facets.len()]);
-    Some(surface.with_mirrors(&model.reference, |node, axis| model.fixed[2 * node + axis]))
+    let is_fixed = |node: usize, axis: usize| model.fixed[2 * node + axis];
+    Some(surface.with_mirrors(&model.reference, &bounds(&model.parts, &model.reference), is_fixed))
 }
 
 /// The boundary of a body in space.
 fn surface(model: &Model, part: &BodyInstance) -> Boundary {
     let shape = part.body.mesh().element.facet_shape();
     let boundary = Boundary::new(shape, &skin_facets(part), &[], 0);
-    boundary.with_mirrors(&model.reference, |node, axis| model.fixed[3 * node + axis])
+    let is_fixed = |node: usize, axis: usize| model.fixed[3 * node + axis];
+    boundary.with_mirrors(&model.reference, &bounds(&model.parts, &model.reference), is_fixed)
 }
 
 /// Nodes of a body's boundary at convex kinks of more than 30° in the reference configuration,

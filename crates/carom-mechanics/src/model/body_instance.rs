@@ -1,6 +1,6 @@
 //! A body instance: a body with its nodes and dofs in the numbering of the model.
 
-use carom_solid::Body;
+use carom_solid::{Body, Bounds};
 
 use super::formulas::NoValue;
 
@@ -145,4 +145,10 @@ fn total_mass(body: &dyn Body) -> f64 {
         is_uniform &= density == first;
     }
     if is_uniform { volume * first } else { mass }
+}
+
+/// A box around all bodies with cells at positions `y`, flat over all nodes.
+pub fn bounds(bodies: &[BodyInstance], y: &[f64]) -> Bounds {
+    let with_cells = bodies.iter().filter(|body| !body.is_rigid());
+    with_cells.flat_map(|body| body.of(y).chunks(body.body.mesh().dimension())).collect()
 }

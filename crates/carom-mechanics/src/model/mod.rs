@@ -14,7 +14,7 @@ mod redistribution;
 mod rigid;
 mod whole;
 
-pub use body_instance::BodyInstance;
+pub use body_instance::{BodyInstance, bounds};
 pub use contact::{AllowedDepths, Augmentation, Contact};
 pub use formulas::{NoValue, value};
 pub use friction::Friction;

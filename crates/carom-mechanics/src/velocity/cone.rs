@@ -15,6 +15,7 @@
 //! times the normal ones. For accelerations `persistency.rs` chooses pairs of which none pulls.
 
 use std::collections::BTreeMap;
+use std::ops::AddAssign;
 
 use carom_algebra::sums::max_abs;
 use carom_contact::{
@@ -65,6 +66,22 @@ pub(crate) struct Motion {
     pub tangential: Vec<Along>,
     /// Traction across the direction of each slip, which is to vanish.
     turns: Vec<f64>,
+}
+
+/// Works of an impulse other than that of the contact.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Works {
+    /// Work of friction.
+    pub friction: f64,
+    /// Work of moving supports and obstacles.
+    pub external: f64,
+}
+
+impl AddAssign for Works {
+    fn add_assign(&mut self, other: Self) {
+        self.friction += other.friction;
+        self.external += other.external;
+    }
 }
 
 /// The state of a pair in a solve.
@@ -209,6 +226,17 @@ impl Closed {
         for (k, impulse) in self.impulses(motion) {
             (0..3).for_each(|i| state.impulses[k][i] += impulse[i]);
         }
+    }
+
+    /// Work of the reactions J = M Δv + Gᵀp + Hᵀq of moving supports, whose velocities stay.
+    pub(crate) fn work_of_supports(&self, model: &Model, state: &State, motion: &Motion) -> f64 {
+        if model.motions.is_empty() {
+            return 0.0;
+        }
+        let mut reaction = vec![0.0; model.dofs()];
+        model.mass.multiply_into(&motion.x, &mut reaction);
+        self.add_impulses(motion, &mut reaction);
+        model.motions.dofs().map(|dof| reaction[dof] * state.v[dof]).sum()
     }
 
     /// H of a pair, a row per tangent.

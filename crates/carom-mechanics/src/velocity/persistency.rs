@@ -26,9 +26,9 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::velocity::active_rows::{measure_all, pressing};
-use crate::velocity::cone::{Closed, Right};
+use crate::velocity::cone::{Closed, Right, Works};
 use crate::velocity::restitution::{Impact, take};
-use crate::velocity::stick::{Works, begins_to_stick, stop_slips};
+use crate::velocity::stick::{begins_to_stick, stop_slips};
 
 /// Contact and pair.
 type Place = (usize, usize);
@@ -71,8 +71,8 @@ pub(crate) fn project(
         book_kinetic(model, state);
     }
     if closes {
-        works.friction += close_gaps(model, state, &closed, system)?;
-        works.friction += impact.restitute(model, state, &closed, system)?;
+        works += close_gaps(model, state, &closed, system)?;
+        works += impact.restitute(model, state, &closed, system)?;
     }
     accelerate(model, state, &gaps, asks, &slid, system)?;
 
@@ -86,13 +86,13 @@ pub(crate) fn project(
     Ok(Some(jump))
 }
 
-/// The impact of the nodes on the surface. Returns the work of its friction.
+/// The impact of the nodes on the surface.
 fn close_gaps(
     model: &Model,
     state: &mut State,
     closed: &Closed,
     system: &mut System,
-) -> Result<f64, Rejected> {
+) -> Result<Works, Rejected> {
     let closing: Vec<f64> = closed.normals.rows.iter().map(|row| -row.along(&state.v)).collect();
     let slips = closed.slip_rates(&state.v);
     let stopping: Vec<Along> = slips.iter().map(|rate| rate.map(|rate| -rate)).collect();
@@ -102,9 +102,10 @@ fn close_gaps(
     let after = closed.slip_rates(&state.v);
     let mean = |(before, after): (&Along, &Along)| [0, 1].map(|i| 0.5 * (before[i] + after[i]));
     let rates = slips.iter().zip(&after).map(mean);
-    let rubbed = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
-    take(model, state, state.ledger.kinetic - model.kinetic(&state.v) + rubbed);
-    Ok(rubbed)
+    let friction = -rates.zip(&jump.tangential).map(|(rate, q)| inner(rate, *q)).sum::<f64>();
+    let external = closed.work_of_supports(model, state, &jump);
+    take(model, state, state.ledger.kinetic - model.kinetic(&state.v) + friction + external);
+    Ok(Works { friction, external })
 }
 
 /// Accelerations and multipliers of a state with closed pairs, of those that are asked for; `slid`:

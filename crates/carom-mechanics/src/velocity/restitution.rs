@@ -24,7 +24,7 @@ use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::velocity::active_rows::{measure, pressing};
-use crate::velocity::cone::{AT_REST, Closed, Right};
+use crate::velocity::cone::{AT_REST, Closed, Right, Works};
 
 /// Solutions for the factor of speeds with friction, and its change that is round-off.
 const ROUNDS: usize = 50;
@@ -41,14 +41,14 @@ pub(crate) struct Impact<'a> {
 }
 
 impl Impact<'_> {
-    /// Returns energy to projected velocities of closed pairs. The work of friction is returned.
+    /// Returns energy to projected velocities of closed pairs.
     pub(crate) fn restitute(
         &self,
         model: &Model,
         state: &mut State,
         closed: &Closed,
         system: &mut System,
-    ) -> Result<f64, Rejected> {
+    ) -> Result<Works, Rejected> {
         let places = closed.places.iter().zip(closed.normals.rows.iter());
         let speeds: Vec<f64> = places.map(|(place, row)| self.approach(*place, row)).collect();
         settle(model, state, closed, &speeds, system)
@@ -101,25 +101,25 @@ pub(crate) fn separate(
         return Ok(0.0);
     }
     let before = state.ledger.kinetic;
-    let rubbed = settle(model, state, &closed, &speeds, system)?;
+    let works = settle(model, state, &closed, &speeds, system)?;
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
-    state.ledger.contact_work += jump - rubbed;
-    state.ledger.friction_work += rubbed;
+    state.ledger.contact_work += jump - works.friction - works.external;
+    state.ledger.friction_work += works.friction;
+    state.ledger.external_work += works.external;
     Ok(jump)
 }
 
-/// Changes velocities by the response of the mass to a factor times `speeds` of closed pairs. The
-/// work of friction is returned.
+/// Changes velocities by the response of the mass to a factor times `speeds` of closed pairs.
 fn settle(
     model: &Model,
     state: &mut State,
     closed: &Closed,
     speeds: &[f64],
     system: &mut System,
-) -> Result<f64, Rejected> {
+) -> Result<Works, Rejected> {
     if state.ledger.owed == 0.0 {
-        return Ok(0.0);
+        return Ok(Works::default());
     }
     let forces = vec![0.0; model.dofs()];
     let gaps: Vec<f64> = closed.normals.rows.iter().map(|row| row.along(&state.v)).collect();
@@ -157,7 +157,7 @@ fn settle(
         let size = along(speeds);
         let slope = along(&gaps);
         if size <= 0.0 {
-            return Ok(0.0);
+            return Ok(Works::default());
         }
         let factor = root(size, slope, state.ledger.owed);
         if closed.rubs() && factor != 0.0 && (factor - reach).abs() > ROUND_OFF * factor.abs() {
@@ -171,7 +171,8 @@ fn settle(
             let rates = [0, 1].map(|i| rate[i] + 0.5 * share * change[i]);
             inner(q.map(|q| share * q), rates)
         };
-        let rubbed = -works.map(work).sum::<f64>();
+        let friction = -works.map(work).sum::<f64>();
+        let external = share * closed.work_of_supports(model, state, &motion);
         for i in (0..forces.len()).filter(|&i| !model.massless[i]) {
             state.v[i] += share * motion.x[i];
         }
@@ -179,7 +180,7 @@ fn settle(
             (0..3).for_each(|i| state.impulses[k][i] += share * impulse[i]);
         }
         state.ledger.owed -= factor * (0.5 * size * factor + slope);
-        return Ok(rubbed);
+        return Ok(Works { friction, external });
     }
     Err(Rejected::NoFrictionBalance)
 }

@@ -18,16 +18,7 @@ use crate::linear::system::System;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
-use crate::velocity::cone::{Closed, Motion};
-
-/// Works of an impulse.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Works {
-    /// Work of friction.
-    pub friction: f64,
-    /// Work of moving supports.
-    pub external: f64,
-}
+use crate::velocity::cone::{Closed, Works};
 
 /// Whether an active pair of a state sticks which slipped before.
 pub(crate) fn begins_to_stick(state: &State, before: &State, (contact, p): (usize, usize)) -> bool {
@@ -46,18 +37,7 @@ pub(crate) fn stop_slips(
     let rates = closed.slip_rates(&state.v);
     let jump = closed.stop(model, state, &rates, system)?;
     let friction = -0.5 * rates.iter().zip(&jump.tangential).map(|(rate, q)| inner(*rate, *q)).sum::<f64>();
-    let external = work_of_supports(model, state, closed, &jump);
+    let external = closed.work_of_supports(model, state, &jump);
     closed.strike(model, state, &jump);
     Ok(Works { friction, external })
-}
-
-/// Work of the reactions J = M Δv + Gᵀp + Hᵀq of moving supports, whose velocities stay.
-fn work_of_supports(model: &Model, state: &State, closed: &Closed, jump: &Motion) -> f64 {
-    if model.motions.is_empty() {
-        return 0.0;
-    }
-    let mut reaction = vec![0.0; model.dofs()];
-    model.mass.multiply_into(&jump.x, &mut reaction);
-    closed.add_impulses(jump, &mut reaction);
-    model.motions.dofs().map(|dof| reaction[dof] * state.v[dof]).sum()
 }

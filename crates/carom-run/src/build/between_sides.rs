@@ -8,7 +8,7 @@ use carom_contact::{
     BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToObstacle,
     NodeToPatch, NodesWithDepth, Surface, TipToFacet, WithEdges, WithTips,
 };
-use carom_mechanics::model::BodyInstance;
+use carom_mechanics::model::{BodyInstance, bounds};
 
 use super::side::{Side, side};
 
@@ -181,14 +181,14 @@ impl Bodies<'_> {
     fn surface(&self, side: &Side, siblings: &[Side]) -> Surface {
         let (rest, count) = self.rest(side, siblings);
         let surface = Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count);
-        surface.with_mirrors(self.reference, self.is_fixed())
+        surface.with_mirrors(self.reference, &bounds(self.parts, self.reference), self.is_fixed())
     }
 
     /// A side in space with its siblings and the rest of its body's boundary.
     fn boundary(&self, side: &Side, siblings: &[Side]) -> Boundary {
         let (rest, count) = self.rest(side, siblings);
         let boundary = Boundary::new(side.shape, &side.facets, &rest, count);
-        boundary.with_mirrors(self.reference, self.is_fixed())
+        boundary.with_mirrors(self.reference, &bounds(self.parts, self.reference), self.is_fixed())
     }
 
     /// The rest of the boundary of a side's body, the facets of its siblings first, and their

@@ -9,7 +9,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use carom_algebra::Vector;
-use carom_solid::FacetShape;
+use carom_solid::{Bounds, FacetShape};
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
 use crate::kinematics::mirror::{is_mirror, reflected};
@@ -109,11 +109,16 @@ impl Boundary {
         }
     }
 
-    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `is_fixed`: whether a
-    /// node is fixed along an axis.
+    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `bodies`: a box around
+    /// all bodies; `is_fixed`: whether a node is fixed along an axis.
     #[must_use]
-    pub fn with_mirrors(mut self, y: &[f64], is_fixed: impl Fn(usize, usize) -> bool) -> Self {
-        let is_mirror = |facet: &[usize]| is_mirror(facet, y, 3, &is_fixed);
+    pub fn with_mirrors(
+        mut self,
+        y: &[f64],
+        bodies: &Bounds,
+        is_fixed: impl Fn(usize, usize) -> bool,
+    ) -> Self {
+        let is_mirror = |facet: &[usize]| is_mirror(facet, y, 3, bodies, &is_fixed);
         self.mirrors = self.nodes.chunks_exact(self.shape.nodes()).map(is_mirror).collect();
         self
     }
