@@ -292,3 +292,21 @@ energy_guard = false
         assert!(let_go > 0, "{scheme}");
     }
 }
+
+/// The work of a rigid wall of constant speed is its impulse times that speed: also that of the
+/// impulses where contact begins and where energy is returned. (With schemes that carry momentum in
+/// accelerations, the impulse has a part of theirs.)
+#[test]
+fn the_work_of_a_wall_of_constant_speed_is_its_impulse_times_that() {
+    let wall = include_str!("../../../../cases/obstacle/moving-wall.toml");
+    let midpoint = "time.scheme={ kind = \"energy-momentum\" }";
+    let bathe = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
+    let (projects, returns) = ("contact.wall.persistency=project", "contact.wall.restitution=0.6");
+    for sets in [&[projects, midpoint][..], &[projects, bathe], &[projects, midpoint, returns]] {
+        let sim = finish(simulation(wall, sets));
+        let state = sim.state();
+        let work = 10.0 * state.impulses[0][0];
+        let apart = (state.ledger.external_work / work - 1.0).abs();
+        assert!(work > 1000.0 && apart < 1e-11, "{sets:?}: {work} {apart:e}");
+    }
+}
