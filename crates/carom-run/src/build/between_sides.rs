@@ -80,13 +80,14 @@ impl Bodies<'_> {
         let own = self.others(primary, &of_primary[0], secondary, &corners);
         let earlier =
             [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
+        let single = self.has_single_facets(k);
         let edges = EdgeToEdge::new([opposite.clone(), side.clone()], &earlier, self.reference);
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
-            .with_single_facets(true)
+            .with_single_facets(single)
             .of_body(opposite.clone());
         let others = NodeToPatch::new(own.nodes, opposite)
             .with_allowed(own.depths)
-            .with_single_facets(true)
+            .with_single_facets(single)
             .of_body(side);
         WithEdges::new(BothSides::new(nodes, others), edges)
     }
