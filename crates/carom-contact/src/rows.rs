@@ -147,16 +147,32 @@ impl Rows {
         }
     }
 
-    /// Adds the mean of every `stride`-th row of `rows` from `first` on, over all their nodes:
-    /// those of the first row in its order, then the others.
-    pub(crate) fn push_mean(&mut self, rows: &Self, first: usize, stride: usize) {
-        let share = 1.0 / (first..rows.len()).step_by(stride).len() as f64;
+    /// Replaces the rows from `first` on by the means of every `stride`-th of them, each over all
+    /// their nodes: those of the first row in its order, then the others.
+    pub(crate) fn average_from(&mut self, first: usize, stride: usize) {
+        let end = self.len();
+        (first..(first + stride).min(end)).for_each(|row| self.push_mean(row, end, stride));
+        let [from, to] = [first, end].map(|row| self.starts[row]);
+        self.gaps.drain(first..end);
+        self.reversed.drain(first..end);
+        self.own.drain(first..end);
+        self.nodes.drain(from..to);
+        self.gradients.drain(self.dimension * from..self.dimension * to);
+        self.starts.drain(first..end);
+        self.starts[first..].iter_mut().for_each(|start| *start -= to - from);
+    }
+
+    /// Adds the mean of every `stride`-th row from `first` to `end`.
+    fn push_mean(&mut self, first: usize, end: usize, stride: usize) {
+        let rows = (first..end).step_by(stride);
+        let share = 1.0 / rows.len() as f64;
         let d = self.dimension;
         let start = self.nodes.len();
         let mut gap = 0.0;
-        for row in (first..rows.len()).step_by(stride).map(|row| rows.row(row)) {
-            gap += share * row.gap;
-            for (k, &node) in row.nodes.iter().enumerate() {
+        for row in rows {
+            gap += share * self.gaps[row];
+            for k in self.starts[row]..self.starts[row + 1] {
+                let node = self.nodes[k];
                 let known = self.nodes[start..].iter().position(|&other| other == node);
                 let at = start + known.unwrap_or(self.nodes.len() - start);
                 if known.is_none() {
@@ -164,7 +180,7 @@ impl Rows {
                     self.gradients.resize(d * self.nodes.len(), 0.0);
                 }
                 for i in 0..d {
-                    self.gradients[d * at + i] += share * row.gradient[d * k + i];
+                    self.gradients[d * at + i] += share * self.gradients[d * k + i];
                 }
             }
         }

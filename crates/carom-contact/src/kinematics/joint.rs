@@ -24,7 +24,7 @@ pub(super) trait OnFacets {
 
     /// The pairs of a node with every facet of the joint at which its pair lies, itself first, at
     /// their closest points; only itself if it lies at none.
-    fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair>;
+    fn parts<'a>(&'a self, pair: &'a Pair, y: &'a [f64]) -> impl Iterator<Item = Pair> + 'a;
 
     /// Size of a facet.
     fn size(&self, facet: usize, y: &[f64]) -> f64;
@@ -43,12 +43,11 @@ pub(super) trait OnFacets {
     /// Finds the joints over which pairs lie at the start of a solve. A node that has a pair with
     /// every facet of a concave joint keeps these.
     fn start_joints(&self, pairs: &mut [Pair], y: &[f64]) {
-        let nodes: Vec<usize> = pairs.iter().map(|pair| pair.node).collect();
-        for pair in pairs {
-            pair.joint = self.joint_of(pair, y);
-            let meets = || nodes.iter().filter(|&&node| node == pair.node).count();
-            if pair.joint.is_some() && meets() == self.parts(pair, y).len() {
-                pair.joint = None;
+        for i in 0..pairs.len() {
+            pairs[i].joint = self.joint_of(&pairs[i], y);
+            let meets = || pairs.iter().filter(|pair| pair.node == pairs[i].node).count();
+            if pairs[i].joint.is_some() && meets() == self.parts(&pairs[i], y).count() {
+                pairs[i].joint = None;
             }
         }
     }
@@ -61,7 +60,7 @@ pub(super) trait OnFacets {
         for pair in pairs.iter_mut().filter(|pair| pair.active && pair.joint.is_some()) {
             gaps.clear();
             let is_measured =
-                self.parts(pair, y).iter_mut().all(|part| self.measure_one(part, y, &mut gaps).is_ok());
+                self.parts(pair, y).all(|mut part| self.measure_one(&mut part, y, &mut gaps).is_ok());
             let mean = gaps.iter().map(|row| row.gap).sum::<f64>() / gaps.len() as f64;
             let apart = gaps.iter().map(|row| (row.gap - mean).abs()).fold(0.0, f64::max);
             if !is_measured || apart > AT_JOINT * self.size(pair.facet, y) {
@@ -102,14 +101,14 @@ pub(super) trait OnFacets {
         if pair.joint.is_none() {
             return self.measure_one(pair, y, rows);
         }
-        let mut of_facets = Rows::new(self.dimension());
-        for (k, mut part) in self.parts(pair, y).into_iter().enumerate() {
-            self.measure_one(&mut part, y, &mut of_facets)?;
-            if k == 0 {
-                [pair.xi, pair.eta] = [part.xi, part.eta];
-            }
+        let first = rows.len();
+        let mut own = None;
+        for mut part in self.parts(pair, y) {
+            self.measure_one(&mut part, y, rows)?;
+            own = own.or(Some([part.xi, part.eta]));
         }
-        rows.push_mean(&of_facets, 0, 1);
+        [pair.xi, pair.eta] = own.unwrap_or([pair.xi, pair.eta]);
+        rows.average_from(first, 1);
         Ok(())
     }
 
@@ -118,21 +117,19 @@ pub(super) trait OnFacets {
             self.curvature_of_one(pair, y, curvature);
             return;
         }
-        self.mean_matrix(&self.parts(pair, y), curvature, |part, matrix| {
-            self.curvature_of_one(part, y, matrix);
-        });
+        let parts: Vec<Pair> = self.parts(pair, y).collect();
+        self.mean_matrix(&parts, curvature, |part, matrix| self.curvature_of_one(part, y, matrix));
     }
 
     fn slip_of_mean(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         if pair.joint.is_none() {
             return self.slip_of_one(pair, y, rows);
         }
-        let mut of_facets = Rows::new(self.dimension());
+        let first = rows.len();
         for part in self.parts(pair, y) {
-            self.slip_of_one(&part, y, &mut of_facets)?;
+            self.slip_of_one(&part, y, rows)?;
         }
-        let tangents = self.dimension() - 1;
-        (0..tangents).for_each(|tangent| rows.push_mean(&of_facets, tangent, tangents));
+        rows.average_from(first, self.dimension() - 1);
         Ok(())
     }
 
@@ -141,13 +138,14 @@ pub(super) trait OnFacets {
             self.slip_derivative_of_one(pair, y, tangent, matrix);
             return;
         }
-        self.mean_matrix(&self.parts(pair, y), matrix, |part, matrix| {
+        let parts: Vec<Pair> = self.parts(pair, y).collect();
+        self.mean_matrix(&parts, matrix, |part, matrix| {
             self.slip_derivative_of_one(part, y, tangent, matrix);
         });
     }
 
     /// Overwrites the first entries of `mean` with the mean of the matrices of pairs, over the
-    /// nodes of their mean row ([`Rows::push_mean`]).
+    /// nodes of their mean row ([`Rows::average_from`]).
     fn mean_matrix(&self, parts: &[Pair], mean: &mut [f64], matrix: impl Fn(&Pair, &mut [f64])) {
         let dimension = self.dimension();
         let nodes: Vec<Vec<usize>> = parts.iter().map(|part| self.nodes_with(part)).collect();

@@ -484,9 +484,9 @@ impl OnFacets for NodeToFacet {
         self.primary.shape().dimension()
     }
 
-    fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair> {
+    fn parts<'a>(&'a self, pair: &'a Pair, y: &'a [f64]) -> impl Iterator<Item = Pair> + 'a {
         let y = self.places(y);
-        let at = |facet: usize, xi: f64| {
+        let at = move |facet: usize, xi: f64| {
             let part = Pair { facet, xi, joint: None, ..*pair };
             Pair { xi: self.closest(&part, y).unwrap_or(xi), ..part }
         };
@@ -494,7 +494,7 @@ impl OnFacets for NodeToFacet {
         let forward = pair.joint == Some(1);
         let next = pair.joint.and_then(|_| self.primary.neighbour_of_side(pair.facet, forward));
         let beside = next.map(|facet| at(facet, if forward { -1.0 } else { 1.0 }));
-        std::iter::once(own).chain(beside).collect()
+        std::iter::once(own).chain(beside)
     }
 
     fn size(&self, facet: usize, y: &[f64]) -> f64 {

@@ -34,7 +34,7 @@ impl Bodies<'_> {
     /// Kinematics of contact `k` between two sides, of which one may be the other.
     pub(super) fn kinematics(&self, k: usize, secondary: &Side, primary: &Side) -> Box<dyn Kinematics> {
         match (self.case.dimension, primary.part == secondary.part) {
-            (3, true) => Box::new(self.itself_in_space(secondary)),
+            (3, true) => Box::new(self.itself_in_space(k, secondary)),
             (_, true) => Box::new(self.itself(k, secondary)),
             (3, false) => Box::new(self.in_space(k, secondary, primary)),
             (_, false) => self.in_the_plane(k, secondary, primary),
@@ -105,11 +105,12 @@ impl Bodies<'_> {
         Box::new(WithTips::new(obstacle, tips))
     }
 
-    /// Whether a node over a joint has a pair with one facet: springs chatter, and slips of the mean
-    /// do not converge in load steps.
+    /// Whether a node over a joint has a pair with one facet: springs chatter, and load steps in
+    /// space may leave out the slip of a mean as one that depends on others.
     fn has_single_facets(&self, k: usize) -> bool {
         let spec = &self.case.contacts[k];
-        spec.friction.exists() || spec.enforcement == case::Enforcement::Penalty
+        let rests_in_space = self.case.time.scheme.is_static() && self.case.dimension == 3;
+        spec.enforcement == case::Enforcement::Penalty || spec.friction.exists() && rests_in_space
     }
 
     fn itself(&self, k: usize, side: &Side) -> BothSides<NodeToFacet> {
@@ -129,13 +130,22 @@ impl Bodies<'_> {
         )
     }
 
-    fn itself_in_space(&self, side: &Side) -> WithEdges {
+    fn itself_in_space(&self, k: usize, side: &Side) -> WithEdges {
         let boundary = self.boundary(side, &[]);
         let sharp = boundary.nodes_of_sharp_edges(self.reference);
         let earlier = self.others(side, &[], side, &sharp);
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
-        WithEdges::of_itself(&boundary, side.nodes.clone(), earlier, &pieces, part.first_node, self.reference)
+        let single = self.has_single_facets(k);
+        WithEdges::of_itself(
+            &boundary,
+            side.nodes.clone(),
+            earlier,
+            &pieces,
+            part.first_node,
+            self.reference,
+            single,
+        )
     }
 
     fn is_fixed(&self) -> impl Fn(usize, usize) -> bool {

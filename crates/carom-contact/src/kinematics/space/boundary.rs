@@ -406,7 +406,6 @@ impl Boundary {
     }
 }
 
-
 impl Facets<3> for Boundary {
     fn shape(&self) -> FacetShape {
         self.shape

@@ -16,7 +16,7 @@ impl WithEdges {
     /// A side against itself: its nodes in the role of the later place, and those in the role of
     /// the earlier one, whose depth is zero at sharp edges; `piece`: the connected piece of its
     /// body to which each node belongs, from `first_node` on; `reference`: the reference positions,
-    /// flat over all nodes.
+    /// flat over all nodes; `single`: whether a node over a joint has a pair with one facet.
     pub fn of_itself(
         side: &Boundary,
         nodes: Vec<usize>,
@@ -24,10 +24,12 @@ impl WithEdges {
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
+        single: bool,
     ) -> Self {
         let folds = Arc::new(PatchFolds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
-            NodeToPatch::new(nodes, side.clone()).of_body(side.clone()).folding(folds.clone(), which)
+            let nodes = NodeToPatch::new(nodes, side.clone()).with_single_facets(single);
+            nodes.of_body(side.clone()).folding(folds.clone(), which)
         };
         let others = [BTreeSet::new(), BTreeSet::new()];
         let edges = EdgeToEdge::new([side.clone(), side.clone()], &others, reference).folding(folds.clone());

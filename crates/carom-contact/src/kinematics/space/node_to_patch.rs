@@ -502,9 +502,9 @@ impl OnFacets for NodeToPatch {
         3
     }
 
-    fn parts(&self, pair: &Pair, y: &[f64]) -> Vec<Pair> {
+    fn parts<'a>(&'a self, pair: &'a Pair, y: &'a [f64]) -> impl Iterator<Item = Pair> + 'a {
         let from = place(y, self.secondary[pair.node]);
-        let at = |facet: usize, [xi, eta]: [f64; 2]| {
+        let at = move |facet: usize, [xi, eta]: [f64; 2]| {
             let part = Pair { facet, xi, eta, joint: None, ..*pair };
             let [xi, eta] = self.closest(&part, y).unwrap_or([xi, eta]);
             Pair { xi, eta, ..part }
@@ -512,8 +512,8 @@ impl OnFacets for NodeToPatch {
         let own = at(pair.facet, [pair.xi, pair.eta]);
         let joined = pair.joint.map_or_else(Vec::new, |joint| self.primary.joined(pair.facet, joint));
         let others = joined.into_iter().filter(|&facet| facet != pair.facet);
-        let beside = others.map(|facet| at(facet, self.primary.patch(facet).nearest(y, from).xi));
-        std::iter::once(own).chain(beside).collect()
+        let beside = others.map(move |facet| at(facet, self.primary.patch(facet).nearest(y, from).xi));
+        std::iter::once(own).chain(beside)
     }
 
     fn size(&self, facet: usize, y: &[f64]) -> f64 {
@@ -528,13 +528,15 @@ impl OnFacets for NodeToPatch {
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);
-        // Of its own side a node may meet one facet of a joint only.
-        if self.single || self.folds.is_some() || !(-AROUND_JOINT..=REACH).contains(&furthest) {
+        if self.single || !(-AROUND_JOINT..=REACH).contains(&furthest) {
             return None;
         }
         let mut joints = 0..2 * patch.corners() as u8;
         let joint = joints.find(|&joint| self.past_joint(pair, joint, y) <= AT_JOINT)?;
-        self.is_blunt(pair.facet, joint, y).then_some(joint)
+        // Of its own side a node may not meet every facet there.
+        let is_met = |&facet: &usize| self.may_take(self.secondary[pair.node], facet, y);
+        let meets_all = self.folds.is_none() || self.primary.joined(pair.facet, joint).iter().all(is_met);
+        (meets_all && self.is_blunt(pair.facet, joint, y)).then_some(joint)
     }
 
     fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
