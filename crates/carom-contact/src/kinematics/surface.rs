@@ -136,9 +136,10 @@ impl Surface {
     }
 
     /// The facet that follows (or precedes) a facet in the direction of traversal, if it belongs to
-    /// the side.
+    /// the side and is a surface.
     pub(crate) fn neighbour_of_side(&self, facet: usize, forward: bool) -> Option<usize> {
-        self.neighbour(facet, forward).filter(|&neighbour| self.is_of_side(neighbour))
+        let is_met = |&facet: &usize| self.is_of_side(facet) && !self.is_mirror(facet);
+        self.neighbour(facet, forward).filter(is_met)
     }
 
     /// Nodes of the side at convex corners of the boundary, ascending: kinks of more than 30° at

@@ -194,14 +194,16 @@ impl Boundary {
         self.facets_around(self.patch(facet).nodes[corner])
     }
 
-    /// The facets that meet at a corner of a facet, or across an edge, with itself; corners are
-    /// numbered before edges.
+    /// The facets that meet at a corner of a facet, or across an edge, with itself, without those in
+    /// planes of symmetry; corners are numbered before edges.
     pub(super) fn joined(&self, facet: usize, joint: u8) -> Vec<usize> {
         let corners = self.shape.corners();
-        match usize::from(joint).checked_sub(corners) {
+        let mut joined = match usize::from(joint).checked_sub(corners) {
             None => self.around(facet, usize::from(joint)).to_vec(),
             Some(edge) => std::iter::once(facet).chain(self.across(facet, edge)).collect(),
-        }
+        };
+        joined.retain(|&facet| !self.is_mirror(facet));
+        joined
     }
 
     /// Distance of a point, along the surface, from the joint at a corner or an edge of a facet;

@@ -235,7 +235,7 @@ impl NodeToPatch {
         let own = patch.nearest(y, from);
         let mut best = None;
         for &facet in self.primary.ring(pair.facet) {
-            if !self.may_take(node, facet, y) {
+            if self.primary.is_mirror(facet) || !self.may_take(node, facet, y) {
                 continue;
             }
             let found = self.primary.patch(facet).nearest(y, from);
