@@ -20,9 +20,12 @@
 //!
 //! The nodes of the primary follow those of the secondary side. Where a corner meets a secondary
 //! node and a facet at the corner is parallel to the secondary one, either row would prevent
-//! penetration, and both would be nearly dependent: the corner is then left to the node.
+//! penetration, and both would be nearly dependent: the corner is then left to the node. It is not
+//! left to one in a concave corner, whose row may be that with another facet.
 
 use std::sync::Arc;
+
+use carom_algebra::Vector;
 
 use super::Kinematics;
 use super::facets::OnFacet;
@@ -30,10 +33,13 @@ use super::folds::{Folds, Side};
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::one_way::OneWay;
 use super::passed::Passed;
+use super::space::cross;
 use super::surface::Surface;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
+/// Sine of the angle, 30°, above which a facet rises in front of another one.
+const RISES: f64 = 0.5;
 /// Cosine of the angle, 10°, up to which two facets count as parallel.
 pub(super) const PARALLEL: f64 = 0.985;
 
@@ -105,14 +111,26 @@ impl<K: OneWay> BothSides<K> {
     /// facet parallel to that one, so that the node alone prevents penetration.
     fn is_left_to_node(&self, corner: &Pair, y: &[f64]) -> bool {
         let node = self.reverse.secondary()[corner.node];
-        let normal = self.reverse.normal(corner.facet, [corner.xi, corner.eta], y);
+        let normal = Vector(self.reverse.normal(corner.facet, [corner.xi, corner.eta], y));
         let faced = self.reverse.nodes_of(corner.facet);
         self.corners[corner.node].iter().any(|&OnFacet { facet, xi }| {
-            let own = self.forward.normal(facet, xi, y);
+            let own = Vector(self.forward.normal(facet, xi, y));
             // Where an overlap is kept, they meet at that distance.
             let near = K::NEAR_END * self.forward.length(facet, y) + self.reverse.kept(corner.node);
-            own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2] < -PARALLEL
-                && faced.iter().any(|&other| self.forward.distance(other, node, normal, y) < near)
+            // Without regard to their depth, which may be large before convergence.
+            let meets = |other: usize| cross(self.reverse.offset(other, node, y), normal).norm() < near;
+            own.dot(&normal) < -PARALLEL
+                && faced.iter().any(|&other| meets(other) && !self.is_in_notch(other, normal, y))
+        })
+    }
+
+    /// Whether a node of the secondary lies in a concave corner: another facet there rises in front
+    /// of the one with this normal.
+    fn is_in_notch(&self, node: usize, normal: Vector<3>, y: &[f64]) -> bool {
+        self.reverse.facets_at(node).iter().any(|&OnFacet { facet, .. }| {
+            let height = |&other: &usize| self.reverse.offset(node, other, y).dot(&normal);
+            let highest = self.reverse.nodes_of(facet).iter().map(height).fold(0.0, f64::max);
+            highest > RISES * self.reverse.length(facet, y)
         })
     }
 

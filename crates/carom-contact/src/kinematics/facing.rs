@@ -3,8 +3,8 @@
 //! ```text
 //! joint, convex          a pair past the end is handed to the neighbour; past the ends of both, it keeps
 //!                        its facet, which is extrapolated up to |ξ| = 1.2
-//! concave corner         a node that would be handed back within the step has a pair with either facet,
-//!                        g ≥ 0 for both: it may lie in the joint
+//! concave corner         a node behind both facets, or that would be handed back within the step, has a
+//!                        pair with either facet, g ≥ 0 for both: it may lie in the joint
 //! plane of symmetry       a facet is extrapolated: its mirror image continues it
 //! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
@@ -80,7 +80,11 @@ impl Surface {
                 return Next::HandOver(neighbour, [xi, 0.0]);
             }
         }
-        // Past both ends: in the vertex cone of a convex joint.
+        // Past both ends: behind both facets of a concave corner.
+        if self.is_notch(first, second, y) {
+            return Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]);
+        }
+        // In the vertex cone of a convex joint.
         let bridged = pair.xi.abs() <= REACH && !self.faces_nothing(pair.facet, pair.xi, y);
         if bridged { Next::Stay } else { Next::Leave }
     }

@@ -1,5 +1,7 @@
 //! Interface of one of the two directions of contact between two deformable sides.
 
+use carom_algebra::Vector;
+
 use super::Kinematics;
 use super::facets::OnFacet;
 use super::facing::PAST_SIDE;
@@ -27,9 +29,8 @@ pub trait OneWay: Kinematics {
     /// Length of a primary facet: the distance between its first two corners.
     fn length(&self, facet: usize, y: &[f64]) -> f64;
 
-    /// Distance between two nodes perpendicular to a `normal`, without regard to their depth, which
-    /// may be large before convergence.
-    fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64;
+    /// Vector from one node to another, padded with zeros to space.
+    fn offset(&self, from: usize, to: usize, y: &[f64]) -> Vector<3>;
 }
 
 impl OneWay for NodeToFacet {
@@ -57,9 +58,9 @@ impl OneWay for NodeToFacet {
         self.primary.length(facet, self.places(y))
     }
 
-    fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {
+    fn offset(&self, from: usize, to: usize, y: &[f64]) -> Vector<3> {
         let y = self.places(y);
-        let apart = y.at(a) - y.at(b);
-        (apart[0] * normal[1] - apart[1] * normal[0]).abs()
+        let [x, y] = (y.at(to) - y.at(from)).0;
+        Vector([x, y, 0.0])
     }
 }

@@ -165,6 +165,12 @@ impl Surface {
         kink.sine > 0.0 && kink.cosine < CORNER_COSINE
     }
 
+    /// Whether the joint of a facet and the one that follows it is a concave corner.
+    pub(crate) fn is_notch(&self, facet: usize, next: usize, y: Places) -> bool {
+        let kink = self.kink(facet, next, y);
+        kink.sine < 0.0 && kink.cosine < CORNER_COSINE
+    }
+
     /// Whether the joint of a facet and the one that follows it is smooth, but for a small kink.
     pub(crate) fn is_blunt(&self, facet: usize, next: usize, y: Places) -> bool {
         self.kink(facet, next, y).cosine > CORNER_COSINE

@@ -23,7 +23,7 @@ use super::boundary::Boundary;
 use super::crossing::SEPARATION;
 use super::folds::PatchFolds;
 use super::gap::PatchGap;
-use super::patch::{PatchPoint, WANDER, cross, place};
+use super::patch::{PatchPoint, WANDER, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Next, Sliding};
@@ -362,8 +362,8 @@ impl OneWay for NodeToPatch {
         self.primary.patch(facet).length(y)
     }
 
-    fn distance(&self, a: usize, b: usize, normal: [f64; 3], y: &[f64]) -> f64 {
-        cross(place(y, a) - place(y, b), Vector(normal)).norm()
+    fn offset(&self, from: usize, to: usize, y: &[f64]) -> Vector<3> {
+        place(y, to) - place(y, from)
     }
 }
 
