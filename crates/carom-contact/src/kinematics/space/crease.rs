@@ -2,7 +2,7 @@
 //! point of a node below one is on an edge, and its own facet is not the only one that it enters.
 
 use super::node_to_patch::{NodeToPatch, REACH};
-use super::patch::{WANDER, place};
+use super::patch::place;
 use super::paths::NOISE;
 use crate::kinematics::{Facets, OnFacet};
 
@@ -15,8 +15,7 @@ impl NodeToPatch {
         if self.primary.depth(own, from, y).distance >= 0.0 {
             return None;
         }
-        let xi = self.primary.patch(own).closest_point(y, from, WANDER)?;
-        let mut least = self.gap(own, xi, from, y) - NOISE * self.primary.patch(own).length(y);
+        let mut least = -NOISE * self.primary.patch(own).length(y);
         let mut deepest = None;
         let is_met = |&facet: &usize| self.primary.is_of_side(facet) && self.may_take(node, facet, y);
         for facet in self.primary.ring(own).iter().copied().filter(is_met) {
