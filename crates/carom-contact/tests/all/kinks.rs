@@ -66,6 +66,25 @@ fn a_node_that_goes_to_and_fro_in_a_dent_has_a_pair_with_either_facet() {
 }
 
 #[test]
+fn a_node_behind_both_facets_of_a_notch_has_a_pair_with_either() {
+    let notch = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
+    let sides = Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2]], &[1.0; 2]);
+    let contact = NodeToFacet::new(vec![3], sides, Detection::ClosestPoint);
+    let at = |node: [f64; 2]| [&notch[..], &[node]].concat().into_flattened();
+    let mut pairing = Pairing::default();
+    // The second pair is found in the search after the one that has found that the node is deep.
+    (0..2).for_each(|_| {
+        found(&contact, &at([0.0, 0.1]), &at([0.0, -0.02]), &mut pairing);
+    });
+    let gaps: Vec<f64> = found(&contact, &at([0.0, 0.1]), &at([0.0, -0.02]), &mut pairing)
+        .into_iter()
+        .map(|(_, gap)| gap)
+        .collect();
+    let depth = -0.02 * 0.5_f64.sqrt();
+    assert!(gaps.len() == 2 && gaps.iter().all(|gap| (gap - depth).abs() < 1e-15), "{gaps:?}");
+}
+
+#[test]
 fn a_corner_of_the_primary_does_not_cut_into_an_edge_of_the_secondary() {
     // The edge above the square, of a body that lies above it: its ends are far from the corner.
     let edge = Surface::new(FacetShape::L2, &[vec![4, 5]], &[1.0]);
