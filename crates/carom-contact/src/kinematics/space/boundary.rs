@@ -224,8 +224,23 @@ impl Boundary {
         let across = cross(along, here + there);
         let foot = patch.at(y, patch.along(edge, s)).position;
         let aside = (point - foot).dot(&across).abs() / across.norm();
-        aside.hypot((share - s) * along.norm())
+        let is_past = share != s && !self.ends_at_rim(facet, edge, s, y);
+        aside.hypot(if is_past { (share - s) * along.norm() } else { 0.0 })
     }
+
+    /// Whether the joint at an edge of a facet ends at its corner, s = 0 or 1, where no other facet
+    /// continues the smooth surface.
+    fn ends_at_rim(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> bool {
+        let corner = if s > 0.0 { (edge + 1) % self.shape.corners() } else { edge };
+        let normal = self.middle(facet, y).normal;
+        let beside = self.across(facet, edge);
+        let continues = |&other: &usize| {
+            let is_surface = self.is_of_side(other) && !self.is_mirror(other);
+            other != facet && Some(other) != beside && is_surface && self.is_smooth(other, normal, y)
+        };
+        !self.around(facet, corner).iter().any(continues)
+    }
+
 
     /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
     /// one in its middle.
@@ -254,14 +269,11 @@ impl Boundary {
         }
     }
 
-    /// Whether the boundary goes on inside a facet at a point of it that is nearest to another
-    /// point: on an edge the mirror image may follow.
-    pub(super) fn is_within(&self, facet: usize, at: Feature) -> bool {
-        match at {
-            Feature::Inside => true,
-            Feature::Edge(edge) => self.across(facet, edge).is_some_and(|other| self.is_mirror(other)),
-            Feature::Corner(_) => false,
-        }
+    /// Whether the smooth surface ends at an edge of a facet, or is continued by its mirror image.
+    pub(super) fn is_rim(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
+        self.across(facet, edge).is_none_or(|next| {
+            self.is_mirror(next) || !self.is_of_side(next) || self.is_sharp(facet, edge, y)
+        })
     }
 
     /// Whether an edge of a facet is sharp: convex, with a kink of more than 30°.

@@ -23,7 +23,7 @@ use super::boundary::Boundary;
 use super::crossing::SEPARATION;
 use super::folds::PatchFolds;
 use super::gap::PatchGap;
-use super::patch::{PatchPoint, WANDER, place};
+use super::patch::{Feature, PatchPoint, WANDER, place};
 use super::paths::{NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Next, Sliding};
@@ -233,6 +233,7 @@ impl NodeToPatch {
         }
         let from = place(y, node);
         let own = patch.nearest(y, from);
+        let normal = self.primary.middle(pair.facet, y).normal;
         let mut best = None;
         for &facet in self.primary.ring(pair.facet) {
             if self.primary.is_mirror(facet) || !self.may_take(node, facet, y) {
@@ -240,7 +241,15 @@ impl NodeToPatch {
             }
             let found = self.primary.patch(facet).nearest(y, from);
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
-            if self.primary.is_within(facet, found.at) && found.distance < least {
+            let is_on = match found.at {
+                Feature::Inside => true,
+                // A node past the rim lies beside the facet next to it.
+                Feature::Edge(edge) => {
+                    self.primary.is_rim(facet, edge, y) && self.primary.is_smooth(facet, normal, y)
+                }
+                Feature::Corner(_) => false,
+            };
+            if is_on && found.distance < least {
                 best = Some((facet, found.distance, found.xi));
             }
         }
