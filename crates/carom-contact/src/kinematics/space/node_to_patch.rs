@@ -243,9 +243,11 @@ impl NodeToPatch {
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
             let is_on = match found.at {
                 Feature::Inside => true,
-                // A node past the rim lies beside the facet next to it.
+                // A node just past the rim lies beside the facet there.
                 Feature::Edge(edge) => {
-                    self.primary.is_rim(facet, edge, y) && self.primary.is_smooth(facet, normal, y)
+                    self.primary.is_rim(facet, edge, y)
+                        && self.primary.is_smooth(facet, normal, y)
+                        && self.primary.patch(facet).closest_point(y, from, PAST_SIDE).is_some()
                 }
                 Feature::Corner(_) => false,
             };
