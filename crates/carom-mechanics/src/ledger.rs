@@ -29,10 +29,11 @@ use crate::stage::evaluation::Evaluation;
 use crate::state::{Means, Previous, State};
 
 /// Adds a solved stage to the means over the step (cleared before the first stage). `previous`: the
-/// previous step of a two-step scheme.
+/// previous step of a two-step scheme; `contact_forces`: those of [`contact_forces`], or projected.
 pub(crate) fn add_stage(
     equations: &Equations,
     solved: &Evaluation,
+    contact_forces: &[[f64; 3]],
     previous: Option<&Previous>,
     means: &mut Means,
 ) {
@@ -53,7 +54,7 @@ pub(crate) fn add_stage(
     }
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
-        let force = force_of(solved, k);
+        let force = contact_forces[k];
         for i in 0..3 {
             means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }
@@ -242,7 +243,7 @@ pub(crate) fn account(
 
 /// Overwrites `residual` with the balance of a state whose accelerations are `a`: the reactions of
 /// supports, with those of the points that their nodes carry.
-fn balance_into(model: &Model, state: &State, a: &[f64], residual: &mut [f64]) {
+pub(crate) fn balance_into(model: &Model, state: &State, a: &[f64], residual: &mut [f64]) {
     model.mass.multiply_into(a, residual);
     for (i, force) in residual.iter_mut().enumerate() {
         *force += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
@@ -292,9 +293,12 @@ pub(crate) fn keep_friction(model: &Model, solved: &Evaluation, state: &mut Stat
     }
     state.f_contact.clone_from(&solved.forces.contact);
     state.f_friction.clone_from(&solved.forces.friction);
-    for (k, force) in state.contact_forces.iter_mut().enumerate() {
-        *force = force_of(solved, k);
-    }
+    state.contact_forces = contact_forces(model, solved);
+}
+
+/// Force of an evaluation on the secondary side of each contact.
+pub(crate) fn contact_forces(model: &Model, solved: &Evaluation) -> Vec<[f64; 3]> {
+    (0..model.contacts.len()).map(|k| force_of(solved, k)).collect()
 }
 
 /// Force of an evaluation on the secondary side of a contact.

@@ -10,6 +10,7 @@ use carom_time::{Kernel, Memory, PreviousStep, Stage, Weights};
 use super::finish::Finish;
 use super::in_velocity::solve_in_velocity;
 use super::meetings::Path;
+use super::within::project_within;
 use super::{Accepted, StepReport, Stepper};
 use crate::carried;
 use crate::contact::update::{search, start_step};
@@ -97,7 +98,7 @@ impl Stepper for Implicit {
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             end = equations.stage.end;
             ends.push(time);
-            let (solved, effort) = if self.in_velocity {
+            let (mut solved, effort) = if self.in_velocity {
                 solve_in_velocity(&equations, dt, &self.settings, guess.pairings, work)?
             } else if equations.stage.is_static() && model.has_friction() {
                 let again = guess.clone();
@@ -115,12 +116,16 @@ impl Stepper for Implicit {
             }
             report.events.extend(effort.events);
             next.frozen = effort.frozen;
-            ledger::add_stage(&equations, &solved, previous, &mut means);
             next.a.clone_from(&solved.acceleration);
             equations.stage.velocity.value_into(&solved.at.increment, &mut next.v);
             take_motions(&equations, &mut next);
+            let is_last = k + 1 == self.kernel.stages();
+            let projected =
+                if is_last { None } else { project_within(&equations, &mut solved, &mut next, work)? };
+            let contact_forces = projected.unwrap_or_else(|| ledger::contact_forces(model, &solved));
+            ledger::add_stage(&equations, &solved, &contact_forces, previous, &mut means);
             guess = work.spare.copy(&solved.at);
-            if k + 1 < self.kernel.stages() {
+            if !is_last {
                 finished.push(Point { y: solved.y.clone(), v: next.v.clone(), a: next.a.clone() });
                 work.spare.put(solved);
             } else {

@@ -13,6 +13,7 @@ mod rubbing;
 mod scratch;
 mod tied_mass;
 mod watch;
+mod within;
 
 pub use explicit::Explicit;
 pub use implicit::Implicit;

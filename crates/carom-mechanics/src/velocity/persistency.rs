@@ -50,40 +50,78 @@ pub(crate) fn project(
     activations: &[(usize, usize)],
     system: &mut System,
 ) -> Result<Option<f64>, Rejected> {
-    let asks = |&(k, _): &(usize, usize)| model.contacts[k].projects;
+    let asks = |place: &Place| asks(model, place);
     let closes = activations.iter().any(asks);
     let stops = pressing(state).any(|place| asks(&place) && begins_to_stick(state, impact.start, place));
     if !closes && !stops {
         return Ok(None);
     }
-    let gaps = measure_all(model, state)?;
-    let mut places = independent_rows(model, pressing(state), &gaps);
-    places.retain(asks);
-    let closed = Closed::new(model, state, places, &gaps)?;
-    // Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as
-    // in the step.
-    let slid = closed.slid(state, impact.start);
-
+    let pressed = Pressed::new(model, state, impact.start)?;
     let before = state.ledger.kinetic;
     let mut works = Works::default();
     if stops {
-        works = stop_slips(model, state, &closed, system)?;
+        works = stop_slips(model, state, &pressed.closed, system)?;
         book_kinetic(model, state);
     }
     if closes {
-        works += close_gaps(model, state, &closed, system)?;
-        works += impact.restitute(model, state, &closed, system)?;
+        works += close_gaps(model, state, &pressed.closed, system)?;
+        works += impact.restitute(model, state, &pressed.closed, system)?;
     }
-    accelerate(model, state, &gaps, asks, &slid, system)?;
-
-    averaged_contact_into(model, state, &gaps);
-    book_contact_forces(model, state);
+    pressed.accelerate(model, state, system)?;
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
     state.ledger.contact_work += jump - works.friction - works.external;
     state.ledger.friction_work += works.friction;
     state.ledger.external_work += works.external;
     Ok(Some(jump))
+}
+
+/// Projects `state`, the end of a stage within a step from `start` in which pairs close. Forces and
+/// accelerations are in balance. The jump of the velocities is recorded nowhere: they are weights
+/// of the next stage, and change neither the momentum of the step nor its energy.
+pub(crate) fn project_stage(
+    model: &Model,
+    state: &mut State,
+    start: &State,
+    system: &mut System,
+) -> Result<(), Rejected> {
+    let pressed = Pressed::new(model, state, start)?;
+    close_gaps(model, state, &pressed.closed, system)?;
+    pressed.accelerate(model, state, system)
+}
+
+/// Whether the velocities of a pair are projected.
+fn asks(model: &Model, &(contact, _): &Place) -> bool {
+    model.contacts[contact].projects
+}
+
+/// The closed pairs of a state that is projected.
+struct Pressed {
+    /// Rows of all pairs.
+    gaps: Vec<Rows>,
+    closed: Closed,
+    /// Velocities at the end of a step ring from node to node, its slips do not: a pair goes on as
+    /// in the step.
+    slid: BTreeMap<Place, FrictionState>,
+}
+
+impl Pressed {
+    fn new(model: &Model, state: &mut State, start: &State) -> Result<Self, Rejected> {
+        let gaps = measure_all(model, state)?;
+        let mut places = independent_rows(model, pressing(state), &gaps);
+        places.retain(|place| asks(model, place));
+        let closed = Closed::new(model, state, places, &gaps)?;
+        let slid = closed.slid(state, start);
+        Ok(Self { gaps, closed, slid })
+    }
+
+    /// Accelerations of projected velocities, and the contact forces.
+    fn accelerate(&self, model: &Model, state: &mut State, system: &mut System) -> Result<(), Rejected> {
+        accelerate(model, state, &self.gaps, |place| asks(model, place), &self.slid, system)?;
+        averaged_contact_into(model, state, &self.gaps);
+        book_contact_forces(model, state);
+        Ok(())
+    }
 }
 
 /// The impact of the nodes on the surface.

@@ -5,7 +5,7 @@
 use carom_mechanics::{LogEvent, Rejected};
 use carom_run::{GridReport, Simulation};
 
-use super::common::{schemes, simulation};
+use super::common::{BAR as FALLING, schemes, simulation};
 
 const BAR: &str = include_str!("../../../../cases/bar/single.toml");
 
@@ -387,6 +387,43 @@ fn ringing_contact_hides_nothing_that_it_creates() {
         largest = largest.max(most / ledger.scale());
     }
     assert!(largest > 0.5, "no scheme rings: {largest}");
+}
+
+/// Wherever in a step a gap closes, a composite rule creates no energy, and the impulse of the wall
+/// is the change of momentum. The step is not bisected here.
+#[test]
+fn a_gap_that_closes_at_any_time_of_a_composite_step_creates_no_energy() {
+    let schemes = ["tr-bdf2\"", "bathe\", rho_inf = 0.5", "bathe\", rho_inf = 1.0"];
+    for (scheme, mass) in schemes.iter().flat_map(|scheme| [(scheme, "lumped"), (scheme, "consistent")]) {
+        for passed in [0.0, 1e-6, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8] {
+            let gap = 0.02 * (2.0 + passed);
+            let mesh = format!("{{ shape = \"interval\", min = {gap}, max = {}, cells = 12 }}", gap + 10.0);
+            let sets = [
+                format!("time.scheme={{ kind = \"{scheme} }}"),
+                format!("body.bar.mesh={mesh}"),
+                format!("body.bar.mass=\"{mass}\""),
+                "body.bar.gravity=[0.0]".to_owned(),
+                "time.step=0.02".to_owned(),
+                "time.end=1.0".to_owned(),
+            ];
+            let mut sim = simulation(FALLING, &sets);
+            let momentum = |sim: &Simulation| {
+                let mut momentum = vec![0.0; sim.state().v.len()];
+                sim.model().mass.multiply_into(&sim.state().v, &mut momentum);
+                momentum.iter().sum::<f64>()
+            };
+            let before = momentum(&sim);
+            while !sim.finished() {
+                sim.step().unwrap();
+            }
+            let ledger = &sim.state().ledger;
+            let created = ledger.created.most() / ledger.scale();
+            assert!(created < 1e-3, "{scheme}, {mass}, {passed}: {created}");
+            let missing = momentum(&sim) - before - sim.state().impulse()[0];
+            assert!(missing.abs() < 1e-12 * before.abs(), "{scheme}, {mass}, {passed}: {missing}");
+            assert!(sim.state().impulse()[0] > 0.5 * before.abs());
+        }
+    }
 }
 
 /// A bar at rest has no residual: its steps need one solve each, or two.
