@@ -14,11 +14,19 @@
 //! ```text
 //! ∂(γ_k τ)/∂y_l = −γ_k m ⊗ (γ_l F⁻ᵀ H F⁻¹ τ − (τ·Ω_l) N)/|N| − τ ⊗ Ω_k γ_l
 //! ```
+//!
+//! At a sharp corner or edge of the obstacle the nearest piece may be one on which the body cannot
+//! press. There a node belongs to the piece that is parallel to a facet of its body, also if it
+//! lies past the corner by less than the distance up to which the row of the corner is left to it
+//! (`tip_to_facet.rs`).
 
 use carom_algebra::Vector;
 
 use super::carrier::{Carrier, Local};
-use super::obstacle::{AtCorner, Near, Obstacle, Point, Through, Tip, dot};
+use super::node_to_facet::NodeToFacet;
+use super::obstacle::{AtCorner, CORNER_COSINE, Near, Obstacle, Point, Through, Tip, dot};
+use super::one_way::OneWay;
+use super::outward::{Outward, is_opposed};
 use super::passed::Passed;
 use super::tangents::tangents;
 use super::way::{SHARE, share};
@@ -35,6 +43,8 @@ pub struct NodeToObstacle {
     pub(super) carrier: Option<Carrier>,
     /// Length of the facets at each secondary node; empty if the nodes have no facets.
     lengths: Vec<f64>,
+    /// Boundary of the body of the nodes, if it is known.
+    own: Option<Outward>,
     /// Initial depth that is kept for each node; empty if all are zero.
     kept: Vec<f64>,
 }
@@ -42,7 +52,7 @@ pub struct NodeToObstacle {
 impl NodeToObstacle {
     /// Contact of secondary nodes with an obstacle that is fixed in space.
     pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
-        Self { secondary, dimension, shape, carrier: None, lengths: Vec::new(), kept: Vec::new() }
+        Self { secondary, dimension, shape, carrier: None, lengths: Vec::new(), own: None, kept: Vec::new() }
     }
 
     /// Contact with an obstacle that moves with the nodes of a carrier.
@@ -56,6 +66,12 @@ impl NodeToObstacle {
     #[must_use]
     pub fn with_lengths(self, lengths: Vec<f64>) -> Self {
         Self { lengths, ..self }
+    }
+
+    /// Contact of nodes that belong to a body with the boundary `own`.
+    #[must_use]
+    pub fn of_body(self, own: Outward) -> Self {
+        Self { own: Some(own), ..self }
     }
 
     fn position(&self, node: usize, y: &[f64]) -> Point {
@@ -78,8 +94,37 @@ impl NodeToObstacle {
         self.shape.entered(before, now).map_or(nearest, |entry| entry.piece)
     }
 
+    /// The piece across a sharp corner from that which a node, given by index, would face, on which
+    /// the node presses instead: the piece is parallel to a facet at the node, and that which the
+    /// node would face is not.
+    fn pressed(&self, place: usize, faced: usize, local: &Local, y: &[f64]) -> Option<usize> {
+        let own = self.own.as_ref()?;
+        let length = *self.lengths.get(place)?;
+        let past = NodeToFacet::NEAR_END * length;
+        let here = self.shape.near(faced, local.at).filter(|here| here.gap <= past)?;
+        let over = self.shape.over(local.at, length, past);
+        // A corner of the obstacle has no normal to which a facet could be parallel.
+        let is_flat = here.bend == 0.0;
+        let turns = |piece: &usize| {
+            let there = self.shape.near(*piece, local.at);
+            there.is_some_and(|there| !is_flat || dot(here.normal, there.normal) < CORNER_COSINE)
+        };
+        let mut across = over.into_iter().filter(turns).peekable();
+        across.peek()?;
+        let normals = own.normals(self.secondary[place], y);
+        let outward: Vec<Point> = normals.into_iter().map(|normal| local.back(normal)).collect();
+        if is_flat && is_opposed(here.normal, &outward) {
+            return None;
+        }
+        let presses = |piece: &usize| {
+            self.shape.near(*piece, local.at).is_some_and(|there| is_opposed(there.normal, &outward))
+        };
+        across.find(presses)
+    }
+
     /// The piece of the obstacle on which the gap of a pair is measured.
-    fn measured(&self, pair: &Pair, at: Point) -> usize {
+    fn measured(&self, pair: &Pair, local: &Local, y: &[f64]) -> usize {
+        let at = local.at;
         if self.shape.pieces() == 1 {
             return 0;
         }
@@ -88,7 +133,8 @@ impl NodeToObstacle {
         }
         let nearest = self.shape.nearest(at, Some(pair.facet));
         let is_inside = |piece: usize| self.shape.near(piece, at).is_some_and(|near| near.gap < 0.0);
-        if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest }
+        let faced = if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest };
+        self.pressed(pair.node, faced, local, y).unwrap_or(faced)
     }
 
     /// The tangents of a pair: two in space, one in the plane.
@@ -190,9 +236,11 @@ impl Kinematics for NodeToObstacle {
         let mut changed = false;
         for pair in pairs {
             let node = self.secondary[pair.node];
-            let at = self.local(node, now).at;
+            let local = self.local(node, now);
+            let at = local.at;
             if !pair.active {
                 let facing = self.facing(pair.facet, self.local(node, before).at, at);
+                let facing = self.pressed(pair.node, facing, &local, now).unwrap_or(facing);
                 let is_inside = self.shape.near(facing, at).is_some_and(|near| near.gap < 0.0);
                 changed |= facing != pair.facet && is_inside;
                 pair.facet = facing;
@@ -207,8 +255,14 @@ impl Kinematics for NodeToObstacle {
                     changed = true;
                 }
                 AtCorner::Leaves => {
+                    let nearest = self.shape.nearest(at, Some(pair.facet));
+                    if let Some(pressed) = self.pressed(pair.node, nearest, &local, now) {
+                        changed |= pressed != pair.facet;
+                        pair.facet = pressed;
+                        continue;
+                    }
                     events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                    *pair = Pair::open(pair.node, self.shape.nearest(at, Some(pair.facet)), 0.0);
+                    *pair = Pair::open(pair.node, nearest, 0.0);
                     changed = true;
                 }
                 AtCorner::Goes(_) | AtCorner::Stays => {}
@@ -245,7 +299,7 @@ impl Kinematics for NodeToObstacle {
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
         let local = self.local(node, y);
-        pair.facet = self.measured(pair, local.at);
+        pair.facet = self.measured(pair, &local, y);
         let near = self.near(pair.facet, local.at, node)?;
         self.push(near.gap + self.kept(pair.node), node, &local, local.forth(near.normal), rows);
         Ok(())

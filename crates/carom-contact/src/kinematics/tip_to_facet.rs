@@ -28,6 +28,7 @@ use super::node_to_facet::{Detection, NodeToFacet};
 use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::{Point, Tip, dot};
 use super::one_way::OneWay;
+use super::outward::PARALLEL;
 use super::passed::Passed;
 use super::surface::Surface;
 use super::{Facets, Kinematics};
@@ -35,9 +36,6 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// Cosine of the angle, 10°, up to which a facet counts as parallel to the obstacle beside a
-/// corner.
-const PARALLEL: f64 = 0.985;
 /// Cosine of the angle, 3°, between two facets above which a part touches one of them: the rows of
 /// both would nearly be the same, and the gap differs by r (1 − cos 3°).
 const TURNED: f64 = 0.9986;

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
     BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToObstacle,
-    NodeToPatch, NodesWithDepth, Surface, TipToFacet, WithEdges, WithTips,
+    NodeToPatch, NodesWithDepth, Outward, Surface, TipToFacet, WithEdges, WithTips,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
 
@@ -94,11 +94,18 @@ impl Bodies<'_> {
 
     /// Contact with a rigid obstacle, in the plane with its convex parts.
     pub(super) fn with_tips(&self, k: usize, side: &Side, obstacle: NodeToObstacle) -> Box<dyn Kinematics> {
-        if self.case.dimension != 2 || obstacle.tips(self.reference).is_empty() {
+        let siblings = self.siblings(k, side.part, Which::Secondary).concat();
+        if self.case.dimension == 1 {
             return Box::new(obstacle);
         }
-        let siblings = self.siblings(k, side.part, Which::Secondary);
-        let surface = self.surface(side, &siblings.concat());
+        if self.case.dimension == 3 {
+            return Box::new(obstacle.of_body(Outward::Space(self.boundary(side, &siblings))));
+        }
+        let surface = self.surface(side, &siblings);
+        let obstacle = obstacle.of_body(Outward::Plane(surface.clone()));
+        if obstacle.tips(self.reference).is_empty() {
+            return Box::new(obstacle);
+        }
         let tips = TipToFacet::new(&obstacle, surface, self.reference);
         let springs = self.case.contacts[k].enforcement == case::Enforcement::Penalty;
         let tips = if springs { tips.with_springs() } else { tips };

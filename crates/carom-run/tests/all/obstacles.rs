@@ -4,7 +4,7 @@
 use carom_run::case::Case;
 use carom_run::{Rejected, Setup, Simulation, Stopped};
 
-use super::common::{BAR, momenta, schemes, simulation};
+use super::common::{BAR, finish, momenta, schemes, simulation};
 
 const DISC: &str = r#"
 title = "A disc that strikes a floor"
@@ -298,6 +298,61 @@ fn a_moving_obstacle_lends_no_energy() {
             let speed = momenta(&sim, &state.v)[0] / model.parts[0].total_mass;
             assert!((10.0..20.0 * 1.01).contains(&speed), "{scheme} {step}: {speed}");
             assert!(state.ledger.created.most() <= 0.02 * state.ledger.scale(), "{scheme} {step}");
+        }
+    }
+}
+
+/// A block on a pedestal in whose place a polyline or a box comes, pressed down by 2 %.
+const PRESSED: &str = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.5, young = 2000.0, poisson = 0.25 }]
+support = [{ name = "top", on = ["block.top"], fix = ["x"], move = { y = "-0.005*t" } }]
+[[body]]
+name = "block"
+material = "rubber"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-0.5, 0.0], max = [0.5, 0.25], cells = [4, 1] }
+[[contact]]
+name = "pedestal"
+secondary = "block.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[time]
+end = 1.0
+step = 0.25
+scheme = { kind = "static" }
+"#;
+
+/// Force on the nodes of a block at the height 0.25 along y at the end of a run.
+fn pressed_with(text: &str, sets: &[String]) -> f64 {
+    let sim = finish(simulation(text, sets));
+    let model = sim.model();
+    let on_top = |node: &usize| model.reference[model.dimension * node + 1] == 0.25;
+    let nodes = (0..model.reference.len() / model.dimension).filter(on_top);
+    nodes.map(|node| sim.state().f_internal[model.dimension * node + 1]).sum()
+}
+
+/// The corners of a pedestal are exactly at nodes, or beside them by up to a thousandth of a facet.
+#[test]
+fn a_corner_at_a_node_presses_like_one_beside_it() {
+    let force = |half_width: f64, element: &str, secondary: &str| {
+        let w = half_width;
+        let points = format!("[[{w}, -1.0], [{w}, 0.0], [-{w}, 0.0], [-{w}, -1.0]]");
+        let sets = [
+            format!("body.block.element={element}"),
+            format!("contact.pedestal.secondary=block.{secondary}"),
+            format!("contact.pedestal.primary={{ polyline = {{ points = {points} }} }}"),
+        ];
+        pressed_with(PRESSED, &sets)
+    };
+    for element in ["Q4", "T6"] {
+        for secondary in ["bottom", "skin"] {
+            let [inside, outside] = [0.2503, 0.2497].map(|w| force(w, element, secondary));
+            for half_width in [0.25, 0.25 - 1e-12, 0.25 + 1e-12, 0.2499, 0.2501] {
+                let at = force(half_width, element, secondary);
+                let mean = 0.5 * (inside + outside);
+                let error = (at - mean).abs() / mean.abs();
+                assert!(error < 5e-3, "{element} {secondary} {half_width}: {at} {inside} {outside}");
+            }
         }
     }
 }

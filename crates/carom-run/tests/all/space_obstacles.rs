@@ -301,3 +301,57 @@ fn the_radius_of_a_contact_is_that_of_hertz() {
     let rough = (error / area).sqrt() / largest;
     assert!(rough < 0.035, "{rough}");
 }
+
+/// A block pressed down by 2 %, with a surface in place of the plane.
+const PRESSED: &str = r#"
+dimension = 3
+material = [{ name = "rubber", law = "neo-hookean", density = 1.5, young = 2000.0, poisson = 0.25 }]
+support = [{ name = "top", on = ["block.back"], fix = ["x", "z"], move = { y = "-0.005*t" } }]
+[[body]]
+name = "block"
+material = "rubber"
+element = "Hex8"
+mesh = { shape = "box", min = [-0.5, 0.0, -0.5], max = [0.5, 0.25, 0.5], cells = [4, 1, 4] }
+[[contact]]
+name = "pedestal"
+secondary = "block.skin"
+primary = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
+[time]
+end = 1.0
+step = 0.25
+scheme = { kind = "static" }
+"#;
+
+/// Triangles of the upper end of a square pedestal.
+fn pedestal(w: f64) -> Vec<[[f64; 3]; 3]> {
+    let corners = [[-w, -w], [-w, w], [w, w], [w, -w]];
+    let at = |k: usize, height: f64| [corners[k % 4][0], height, corners[k % 4][1]];
+    let side = |k: usize| {
+        let [a, b, c, d] = [at(k, 0.0), at(k, -1.0), at(k + 1, -1.0), at(k + 1, 0.0)];
+        [[a, b, c], [a, c, d]]
+    };
+    let top = [[at(0, 0.0), at(1, 0.0), at(2, 0.0)], [at(0, 0.0), at(2, 0.0), at(3, 0.0)]];
+    top.into_iter().chain((0..4).flat_map(side)).collect()
+}
+
+/// The edges of a pedestal are exactly under nodes, or beside them by a millionth of a facet.
+#[test]
+fn an_edge_at_nodes_presses_like_one_beyond_them() {
+    let force = |half_width: f64| {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pedestal.stl");
+        std::fs::write(&file, stl(&pedestal(half_width))).unwrap();
+        let file = file.display().to_string();
+        let set = format!("contact.pedestal.primary={{ surface = {{ file = {file:?} }} }}");
+        let sim = finish(simulation(PRESSED, &[set]));
+        let model = sim.model();
+        let on_top = |node: &usize| model.reference[3 * node + 1] == 0.25;
+        let nodes = (0..model.reference.len() / 3).filter(on_top);
+        nodes.map(|node| sim.state().f_internal[3 * node + 1]).sum::<f64>()
+    };
+    let beyond = force(0.2501);
+    for half_width in [0.25, 0.25 - 2.5e-7, 0.25 + 2.5e-7] {
+        let at = force(half_width);
+        assert!((at - beyond).abs() < 1e-9 * beyond.abs(), "{half_width}: {at} {beyond}");
+    }
+}

@@ -124,6 +124,21 @@ impl Faceted {
         if away > 0.0 && (outward || is_rim) { piece } else { self.followed(piece, at) }
     }
 
+    /// The faces within a distance of a point over or under which it lies, to within a distance
+    /// `past` their edges; in ascending order.
+    pub(in super::super) fn over(&self, at: Point, within: f64, past: f64) -> Vec<usize> {
+        let surface = &*self.0;
+        let is_over = |face: &usize| {
+            let height = surface.height(*face, at);
+            let foot = std::array::from_fn(|i| at[i] - height * surface.normals[*face][i]);
+            surface.closest(*face, foot).1 <= past
+        };
+        let bounds = Bounds::of(&at).grown(within);
+        let mut faces: Vec<usize> = surface.tree.meeting(&bounds).filter(is_over).collect();
+        faces.sort_unstable();
+        faces
+    }
+
     /// Signed distance from a piece of the surface to a point, with its derivatives.
     pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         let Surface { triangles, edges, normals, .. } = &*self.0;

@@ -18,7 +18,7 @@ mod near;
 mod path;
 mod polyline;
 
-pub(super) use corner::AtCorner;
+pub(super) use corner::{AtCorner, CORNER_COSINE};
 pub use faceted::Faceted;
 use near::Entry;
 pub use near::Tip;
@@ -101,6 +101,18 @@ impl Obstacle {
             Self::Faceted(surface) => surface.nearest(at, from),
             _ => 0,
         }
+    }
+
+    /// The flat pieces of a polyline or a triangulated surface within a distance of a point over or
+    /// under which it lies, to within a distance `past` their ends.
+    pub(super) fn over(&self, at: Point, within: f64, past: f64) -> Vec<usize> {
+        let is_within = |piece: &usize| self.near(*piece, at).is_some_and(|near| near.gap.abs() <= within);
+        let over = match self {
+            Self::Polyline(line) => line.over(at, past),
+            Self::Faceted(surface) => surface.over(at, within, past),
+            _ => Vec::new(),
+        };
+        over.into_iter().filter(is_within).collect()
     }
 
     /// Where a point on a straight path enters a polyline or a triangulated surface, if it does.

@@ -187,6 +187,18 @@ impl Polyline {
         facing.min_by(|a, b| order(a).0.total_cmp(&order(b).0).then(order(a).1.cmp(&order(b).1))).unwrap_or(0)
     }
 
+    /// The segments over or under which a point lies, to within a distance past their ends.
+    pub(in super::super) fn over(&self, at: Point, past: f64) -> Vec<usize> {
+        let is_over = |piece: &usize| match &self.pieces[*piece] {
+            Piece::Segment { start, tangent, length, ends, .. } => {
+                let along = dot(minus(at, *start), *tangent);
+                (!ends[0] || along >= -past) && (!ends[1] || along <= *length + past)
+            }
+            Piece::Corner { .. } => false,
+        };
+        (0..self.pieces.len()).filter(is_over).collect()
+    }
+
     /// Signed distance from a piece of the polyline to a point, with its derivatives.
     pub(in super::super) fn near(&self, piece: usize, at: Point) -> Option<Near> {
         match self.pieces[piece] {

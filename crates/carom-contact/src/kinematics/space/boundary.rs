@@ -152,7 +152,7 @@ impl Boundary {
     }
 
     /// Position and normal in the middle of a facet.
-    pub(super) fn middle(&self, facet: usize, y: &[f64]) -> PatchPoint {
+    pub(crate) fn middle(&self, facet: usize, y: &[f64]) -> PatchPoint {
         let patch = self.patch(facet);
         patch.at(y, if patch.corners() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] })
     }
@@ -185,7 +185,7 @@ impl Boundary {
     }
 
     /// The facets that meet at a node.
-    pub(super) fn facets_around(&self, node: usize) -> &[usize] {
+    pub(crate) fn facets_around(&self, node: usize) -> &[usize] {
         self.around.get(&node).map_or(&[], Vec::as_slice)
     }
 
