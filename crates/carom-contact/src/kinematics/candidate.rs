@@ -152,8 +152,8 @@ impl NodeToFacet {
     }
 
     /// Whether a node that is no corner itself meets a corner of the primary, which the other
-    /// direction of contact keeps out: with one of the facets there it would push to one side. Where
-    /// a facet at the corner is parallel to one at the node, the corner is left to the node
+    /// direction of contact keeps out: with one of the facets there it would push to one side.
+    /// Where a facet at the corner is parallel to one at the node, the corner is left to the node
     /// (`both_sides.rs`).
     fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
         let forward = xi > 0.0;

@@ -90,8 +90,8 @@ impl Surface {
         }
     }
 
-    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `bodies`: a box around
-    /// all bodies; `is_fixed`: whether a node is fixed along an axis.
+    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `bodies`: a box
+    /// around all bodies; `is_fixed`: whether a node is fixed along an axis.
     #[must_use]
     pub fn with_mirrors(
         mut self,

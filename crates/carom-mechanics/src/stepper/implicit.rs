@@ -125,11 +125,11 @@ impl Stepper for Implicit {
             let contact_forces = projected.unwrap_or_else(|| ledger::contact_forces(model, &solved));
             ledger::add_stage(&equations, &solved, &contact_forces, previous, &mut means);
             guess = work.spare.copy(&solved.at);
-            if !is_last {
+            if is_last {
+                last = Some((equations, solved));
+            } else {
                 finished.push(Point { y: solved.y.clone(), v: next.v.clone(), a: next.a.clone() });
                 work.spare.put(solved);
-            } else {
-                last = Some((equations, solved));
             }
         }
         let Some((equations, solved)) = last else {

@@ -109,8 +109,8 @@ impl Boundary {
         }
     }
 
-    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `bodies`: a box around
-    /// all bodies; `is_fixed`: whether a node is fixed along an axis.
+    /// Marks the facets that lie in a plane of symmetry at the positions `y`; `bodies`: a box
+    /// around all bodies; `is_fixed`: whether a node is fixed along an axis.
     #[must_use]
     pub fn with_mirrors(
         mut self,
@@ -194,8 +194,8 @@ impl Boundary {
         self.facets_around(self.patch(facet).nodes[corner])
     }
 
-    /// The facets that meet at a corner of a facet, or across an edge, with itself, without those in
-    /// planes of symmetry; corners are numbered before edges.
+    /// The facets that meet at a corner of a facet, or across an edge, with itself, without those
+    /// in planes of symmetry; corners are numbered before edges.
     pub(super) fn joined(&self, facet: usize, joint: u8) -> Vec<usize> {
         let corners = self.shape.corners();
         let mut joined = match usize::from(joint).checked_sub(corners) {
@@ -240,7 +240,6 @@ impl Boundary {
         };
         !self.around(facet, corner).iter().any(continues)
     }
-
 
     /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
     /// one in its middle.
@@ -392,7 +391,8 @@ impl Boundary {
         Offset { vector: point - at.position, normal }
     }
 
-    /// Sum of the normals at a corner, weighted with the facets' angles, with those of mirror images.
+    /// Sum of the normals at a corner, weighted with the facets' angles, with those of mirror
+    /// images.
     fn normal_at_corner(&self, node: usize, y: &[f64]) -> Vector<3> {
         let mut sum = Vector::ZERO;
         let count = self.shape.corners();
