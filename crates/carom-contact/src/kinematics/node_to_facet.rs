@@ -521,7 +521,7 @@ impl OnFacets for NodeToFacet {
         }
         let forward = pair.xi > 0.0;
         let joint = u8::from(forward);
-        // Of its own side a node may meet one facet of a joint only.
+        // A node may meet only one facet of a joint of its own side.
         let next = self.primary.neighbour(pair.facet, forward)?;
         if self.excludes(self.secondary[pair.node], next) {
             return None;

@@ -97,7 +97,9 @@ fn curvature<const D: usize>(side: &impl Facets<D>, facet: usize, y: &[f64]) -> 
         around.iter().map(|pair| pair[0].dot(&a) * pair[i].dot(&b)).sum()
     };
     let spread = [sum(0, [first; 2]), sum(0, [first, second]), sum(0, [second; 2])];
-    let (sine, cosine) = (0.5 * (2.0 * spread[1]).atan2(spread[0] - spread[2])).sin_cos();
+    let angle = 0.5 * (2.0 * spread[1]).atan2(spread[0] - spread[2]);
+    let sine = angle.sin();
+    let cosine = angle.cos();
     let axes = [first * cosine + second * sine, second * cosine - first * sine];
     let extents = axes.map(|axis| sum(0, [axis; 2]));
     let over = |turn: f64, extent: f64| {
@@ -158,7 +160,7 @@ mod tests {
                 let found = way * rounding(&side, facet, [xi, 0.0], points.as_flattened());
                 assert!((found - deviation).abs() < 0.02 * deviation, "{facet}: {found} {deviation}");
             }
-            // The same arc as the side of a hole.
+            // An arc of the same size as the side of a hole.
             points.reverse();
         }
     }

@@ -36,7 +36,7 @@ pub(crate) struct Tip {
 pub(crate) struct Pierced {
     /// A node of the nearest facet.
     pub node: usize,
-    /// Its index among the secondary nodes of its contact.
+    /// Index of the part among the secondary nodes of its contact.
     pub place: usize,
     pub depth: f64,
     /// Depth up to which it does not count; infinite if the contact does not hold it.

@@ -45,7 +45,7 @@ pub(crate) fn wires(run: &Recorded, [low, high]: [Place; 2]) -> Vec<Wire> {
         else {
             return one(&contact.name, &contact.primary, surface, [low, high], MARGIN);
         };
-        // What is away from the bodies at first may turn towards them.
+        // An obstacle that is away from the bodies at first may turn towards them.
         let wire = one(&contact.name, &contact.primary, surface, [low, high], WHOLE)?;
         let turn = Turn { angle: angle.formula(&["t"]).ok()?, axis: unit(place(axis)?) };
         Some(Wire { origin: place(about)?, turn: Some(turn), ..wire })

@@ -544,7 +544,7 @@ impl OnFacets for NodeToPatch {
         }
         let mut joints = 0..2 * patch.corners() as u8;
         let joint = joints.find(|&joint| self.past_joint(pair, joint, y) <= AT_JOINT)?;
-        // Of its own side a node may not meet every facet there.
+        // A node may not meet every facet of a joint of its own side.
         let is_met = |&facet: &usize| self.may_take(self.secondary[pair.node], facet, y);
         let meets_all = self.folds.is_none() || self.primary.joined(pair.facet, joint).iter().all(is_met);
         (meets_all && self.is_blunt(pair.facet, joint, y)).then_some(joint)
