@@ -301,7 +301,8 @@ fn the_work_of_a_wall_of_constant_speed_is_its_impulse_times_that() {
     let wall = include_str!("../../../../cases/obstacle/moving-wall.toml");
     let midpoint = "time.scheme={ kind = \"energy-momentum\" }";
     let bathe = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
-    let (projects, returns) = ("contact.wall.persistency=project", "contact.wall.restitution=0.6");
+    let projects = "contact.wall.persistency=project";
+    let returns = "contact.wall.restitution=0.6";
     for sets in [&[projects, midpoint][..], &[projects, bathe], &[projects, midpoint, returns]] {
         let sim = finish(simulation(wall, sets));
         let state = sim.state();

@@ -136,7 +136,8 @@ impl Balance {
             + nodes(model, bodies).map(|node| state.f_external[node * model.dimension].abs()).sum::<f64>();
         self.summed += dt * forces;
         let bodies = &self.bodies;
-        let (mut missing, mut scale) = (0.0_f64, f64::MIN_POSITIVE.max(self.summed));
+        let mut missing = 0.0_f64;
+        let mut scale = f64::MIN_POSITIVE.max(self.summed);
         for &i in &self.free {
             let fallen = self.gravity[i] * state.time;
             let mut contact = 0.0;

@@ -180,7 +180,7 @@ fn an_obstacle_does_not_pass_between_nodes() {
         ];
         let mut sim = Setup::new(&Case::from_text(FALLING, &sets).unwrap()).start().unwrap();
         (0..30).for_each(|_| drop(sim.step().unwrap()));
-        // Its convex part has a row between the nodes, whose gap is closed to round-off.
+        // The convex part of the obstacle has a row between the nodes: it presses.
         let pressed = sim.state().impulses[0][1];
         assert!(pressed > 0.0, "{obstacle}: {pressed:e}");
     }
