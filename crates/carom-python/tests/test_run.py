@@ -187,6 +187,7 @@ import signal, sys, warnings
 warnings.simplefilter("always")
 import carom
 case = carom.Case.from_file(sys.argv[1]).set("time.step", 1e-5)
+print("running", flush=True)
 run = case.run(sys.argv[2] if len(sys.argv) > 2 else None, progress=False)
 print(run.status, run.history.rows)
 """
@@ -203,9 +204,11 @@ def test_ctrl_c_keeps_what_there_is(in_memory: bool, tmp_path: Path) -> None:
         stderr=subprocess.PIPE,
         text=True,
     )
-    time.sleep(3)
+    assert process.stdout is not None and process.stdout.readline() == "running\n"
+    time.sleep(2)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
     status, rows = out.split()
     assert status == "stopped" and int(rows) > 10, err
     assert "stopped by Ctrl-C" in err
