@@ -19,6 +19,9 @@ pub struct Pair {
     /// Facet of the primary side, or piece of a polyline; 0 for a plane or a circle. Edges are
     /// numbered after the facets.
     pub facet: usize,
+    /// Number of facets along the primary, on either side of `facet`, over whose nodes the gap
+    /// extends (mortar); 0 for a node.
+    pub reach: usize,
     /// Contact point on the facet, −1 … 1; 0 if the facet is a point or a plane.
     pub xi: f64,
     /// Second coordinate of the contact point on a facet in space; 0 in the plane. For two edges, ξ
@@ -48,6 +51,7 @@ impl Pair {
         Self {
             node,
             facet,
+            reach: 0,
             xi,
             eta: 0.0,
             joint: None,

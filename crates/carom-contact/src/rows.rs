@@ -103,6 +103,19 @@ impl Rows {
         self.push(gap, nodes.zip(slopes).map(|(&node, slope)| (node, slope.0)));
     }
 
+    /// Adds a row from its gap and the gradients for its nodes, of which the first `own` belong to
+    /// the secondary side.
+    pub(crate) fn push_of_many<const P: usize>(
+        &mut self,
+        gap: f64,
+        nodes: &[usize],
+        own: usize,
+        slopes: &[Vector<P>],
+    ) {
+        self.push(gap, nodes.iter().zip(slopes).map(|(&node, slope)| (node, slope.0)));
+        self.begin_with_edge(own);
+    }
+
     /// Adds the row of a remote pair: it depends on nothing.
     pub fn push_open(&mut self) {
         self.push::<0>(f64::INFINITY, []);

@@ -3,7 +3,7 @@
 
 use super::super::spec::SKIN;
 use super::super::{
-    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ObstacleMotion, Persistency, PrimarySpec,
+    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Method, ObstacleMotion, Persistency, PrimarySpec,
 };
 use super::{Check, Node};
 
@@ -113,6 +113,44 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
+    /// Reports what mortar contact does not have: other dimensions than the plane, contact of a side
+    /// with itself, rigid obstacles, schemes and laws with impulses, and the detection of the paper.
+    fn mortar(&mut self, contact: &ContactSpec) {
+        if contact.method != Method::Mortar {
+            return;
+        }
+        let draft = self.draft;
+        let scheme = self.scheme();
+        let mut refuse = |what: &str, why: &str, hint: &str| {
+            let what = format!("method = \"mortar\" cannot be used {what}");
+            self.add_unique(contact.path("method"), what, why, hint);
+        };
+        let nodes = "use method = \"node-to-segment\"";
+        if let Some(dimension @ (1 | 3)) = draft.dimension {
+            let why = "its weights are integrals over curves in the plane";
+            refuse(&format!("in dimension {dimension}"), why, nodes);
+        }
+        if contact.primary.side().is_none() {
+            refuse("with a rigid obstacle", "the primary must be a side of a body", nodes);
+        }
+        if contact.is_of_itself() {
+            let why = "its multipliers belong to one of two sides";
+            refuse("for contact of a side with itself", why, nodes);
+        }
+        if contact.detection == Detection::Trajectory || contact.xi == ContactPoint::Frozen {
+            let why = "trajectories of single nodes do not decide about a gap that is an average";
+            refuse("with the detection of the paper", why, "leave `detection` and `xi` out");
+        }
+        if let Some(scheme) = scheme.filter(|scheme| scheme.nonsmooth().is_some()) {
+            let why = "its steps solve for impulses on single nodes";
+            let hint = "use an implicit scheme such as chung-hulbert, or method = \"node-to-segment\"";
+            refuse(&format!("with scheme `{}`", scheme.kind), why, hint);
+        } else if contact.law == Some(ContactLaw::Predictor) {
+            let why = "the predictor is projected onto the gaps of single nodes";
+            refuse("with law = \"predictor\"", why, "use law = \"position\"");
+        }
+    }
+
     /// Refuses `detection = "trajectory"` in dimension 3.
     fn in_space(&mut self, contact: &ContactSpec) {
         if self.draft.dimension == Some(3) && contact.detection == Detection::Trajectory {
@@ -211,6 +249,7 @@ impl Check<'_> {
             if !earlier().any(|other| other.entry == contact.entry) {
                 self.law(contact);
                 self.frozen_point(contact);
+                self.mortar(contact);
                 self.friction(contact);
                 self.of_between(contact);
             }

@@ -44,9 +44,9 @@ pub struct ContactSpec {
     /// Motion of a rigid obstacle.
     #[serde(default, skip_serializing_if = "ObstacleMotion::is_fixed")]
     pub motion: ObstacleMotion,
-    /// Discretisation of the contact.
+    /// Discretisation of the contact. `mortar`: dimension 2, sides of two bodies, implicit schemes.
     #[key(default = "\"node-to-segment\"")]
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Method::is_of_nodes")]
     pub method: Method,
     /// Enforcement of the constraint.
     #[key(default = "\"multiplier\"")]
@@ -119,12 +119,22 @@ impl ContactSpec {
 }
 
 /// Discretisation of a contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Keys)]
-#[keys(later = ["mortar"])]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Nodes of the secondary side against facets of the primary one.
     #[default]
     NodeToSegment,
+    /// Gaps weighted with the shape functions of a pressure field on the secondary side: a uniform
+    /// pressure passes between meshes that do not match, and the pressure converges under
+    /// refinement.
+    Mortar,
+}
+
+impl Method {
+    fn is_of_nodes(&self) -> bool {
+        *self == Self::NodeToSegment
+    }
 }
 
 /// The law of friction.

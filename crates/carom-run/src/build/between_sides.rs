@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
-    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, NodeToFacet, NodeToObstacle,
+    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, Mortar, NodeToFacet, NodeToObstacle,
     NodeToPatch, NodesWithDepth, Outward, Surface, TipToFacet, WithEdges, WithTips,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
@@ -64,11 +64,15 @@ impl Bodies<'_> {
             return Box::new(nodes);
         }
         let own = self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
-        let others = NodeToFacet::new(own.nodes, opposite, Detection::ClosestPoint)
+        let others = NodeToFacet::new(own.nodes, opposite.clone(), Detection::ClosestPoint)
             .with_allowed(own.depths)
             .with_single_facets(single)
-            .of_body(side);
-        Box::new(BothSides::new(nodes, others))
+            .of_body(side.clone());
+        let both = BothSides::new(nodes, others);
+        match spec.method {
+            case::Method::NodeToSegment => Box::new(both),
+            case::Method::Mortar => Box::new(Mortar::new(opposite, side, self.reference, both)),
+        }
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {

@@ -1,0 +1,209 @@
+//! Mortar contact in the plane: the gap is constrained on average, with the weights of a pressure
+//! (`multipliers.rs`), over the part of the secondary side that faces the primary (`cut.rs`). A
+//! uniform pressure passes meshes that do not match.
+//!
+//! A pair is a multiplier with a window of the primary, the facets that it may face in a step. The
+//! window only says over which nodes its row extends; the points of quadrature follow from
+//! positions alone.
+
+mod cut;
+mod multipliers;
+mod weighted;
+mod windows;
+
+use carom_algebra::Vector;
+use carom_solid::quadrature;
+
+use self::multipliers::{Multiplier, degree_of_pressure, multipliers};
+use self::weighted::Sample;
+use super::facets::Facets;
+use super::passed::Passed;
+use super::surface::Surface;
+use super::{BothSides, Kinematics, NodeToFacet};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing};
+use crate::places::Places;
+use crate::rows::Rows;
+
+/// Contact of two sides of bodies in the plane on average.
+#[derive(Debug)]
+pub struct Mortar {
+    secondary: Surface,
+    primary: Surface,
+    /// Facets of the primary side, each followed by the next one along the side if there is one.
+    order: Vec<usize>,
+    /// Place of each facet of the primary in that order.
+    place: Vec<usize>,
+    multipliers: Vec<Multiplier>,
+    /// Nodes that represent the multipliers.
+    nodes: Vec<usize>,
+    /// Degree of the pressure.
+    degree: usize,
+    /// Points and weights of quadrature on −1 … 1.
+    rule: Vec<[f64; 2]>,
+    reference: Vec<f64>,
+    /// Initial depth that is kept for each multiplier; empty if all are zero.
+    kept: Vec<f64>,
+    /// Nodes of both sides against the other one: none may pass through it.
+    sides: BothSides<NodeToFacet>,
+}
+
+impl Mortar {
+    /// Contact of a secondary with a primary side; `reference`: reference positions, flat over all
+    /// nodes; `sides`: contact of their nodes, which finds those that pass through a body.
+    pub fn new(
+        secondary: Surface,
+        primary: Surface,
+        reference: &[f64],
+        sides: BothSides<NodeToFacet>,
+    ) -> Self {
+        let multipliers = multipliers(&secondary, reference);
+        let order = windows::along(&primary);
+        let mut place = vec![0; primary.all()];
+        order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
+        let degree_of = |side: &Surface| side.shape().degree();
+        let exact = 2 * degree_of(&secondary).max(degree_of(&primary)) + 3;
+        let rule = quadrature::line(exact).iter().map(|(xi, weight)| [xi[0], weight]).collect();
+        Self {
+            nodes: multipliers.iter().map(|of| of.node).collect(),
+            degree: degree_of_pressure(degree_of(&secondary)),
+            secondary,
+            primary,
+            order,
+            place,
+            multipliers,
+            rule,
+            reference: reference.to_vec(),
+            kept: Vec::new(),
+            sides,
+        }
+    }
+
+    fn reference(&self) -> Places<'_> {
+        Places::new(&self.reference, 2)
+    }
+
+    /// Moves the recorded contact point of a pair to the closest point of the sample that weighs
+    /// most.
+    fn mark(&self, pair: &mut Pair, samples: &[Sample]) {
+        let heaviest = samples.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+        if let Some(sample) = heaviest.filter(|sample| self.window(pair).any(|facet| facet == sample.facet)) {
+            pair.xi = sample.eta;
+        }
+    }
+}
+
+impl Kinematics for Mortar {
+    fn secondary(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    /// None: a multiplier is no node.
+    fn nodes(&self) -> usize {
+        0
+    }
+
+    fn keep(&mut self, depths: &[f64]) {
+        self.kept = depths.to_vec();
+    }
+
+    fn kept(&self, multiplier: usize) -> f64 {
+        self.kept.get(multiplier).copied().unwrap_or(0.0)
+    }
+
+    fn facet_nodes(&self, pair: &Pair) -> &[usize] {
+        self.primary.facet(pair.facet).nodes
+    }
+
+    /// Never: the nodes of a closed pair have gaps of their own.
+    fn is_on_facet(&self, _: &Pair) -> bool {
+        false
+    }
+
+    fn facets(&self, _: usize) -> usize {
+        self.primary.facets()
+    }
+
+    fn signed_distance(&self, multiplier: usize, y: &[f64]) -> Option<f64> {
+        let all = Pair { reach: self.order.len(), ..Pair::open(multiplier, self.order[0], 0.0) };
+        let mut rows = Rows::new(2);
+        self.measure(&mut all.clone(), y, &mut rows).ok()?;
+        let gap = rows.pop();
+        gap.is_finite().then_some(gap)
+    }
+
+    fn search(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
+        self.find_windows(before, now, pairing, events)
+    }
+
+    fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
+        self.sides.passed(before, now, bounce)
+    }
+
+    fn met(&self, multipliers: &[usize], _: &[f64], _: &[f64]) -> Vec<Option<f64>> {
+        vec![None; multipliers.len()]
+    }
+
+    fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let samples = self.samples(pair, Places::new(y, 2))?;
+        self.mark(pair, &samples);
+        if samples.is_empty() {
+            if pair.active {
+                return Err(ContactError::Lost {
+                    node: self.nodes[pair.node],
+                    facet: pair.facet,
+                    xi: pair.xi,
+                });
+            }
+            rows.push_open();
+            return Ok(());
+        }
+        let stencil = self.stencil(pair);
+        let mut gap = self.kept(pair.node);
+        let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
+        for sample in &samples {
+            gap += sample.share * sample.gap.distance;
+            stencil.add_row(sample, sample.gap.gradient(sample.others.len()), &mut slopes);
+        }
+        rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
+        Ok(())
+    }
+
+    fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
+        let stencil = self.stencil(pair);
+        curvature.fill(0.0);
+        let mut of_sample = [0.0; OF_SAMPLE];
+        for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
+            sample.gap.curvature_into(sample.others.len(), 2, &mut of_sample);
+            stencil.add_matrix(&sample, &of_sample, curvature);
+        }
+    }
+
+    fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
+        let stencil = self.stencil(pair);
+        let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
+        for sample in self.samples(pair, Places::new(y, 2))? {
+            stencil.add_row(&sample, sample.gap.slip(sample.others.len()), &mut slopes);
+        }
+        rows.push_of_many(0.0, &stencil.nodes, stencil.own, &slopes);
+        Ok(())
+    }
+
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
+        let stencil = self.stencil(pair);
+        matrix.fill(0.0);
+        let mut of_sample = [0.0; OF_SAMPLE];
+        for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
+            sample.gap.slip_derivative_into(sample.others.len(), &mut of_sample);
+            stencil.add_matrix(&sample, &of_sample, matrix);
+        }
+    }
+}
+
+/// Most entries of a matrix over a point and the nodes of a facet.
+const OF_SAMPLE: usize = 100;

@@ -1,0 +1,163 @@
+//! The windows of a mortar contact: for every multiplier that may come into contact in a step, the
+//! facets of the primary that its part of the secondary side faces.
+
+use carom_solid::{Bounds, Hull};
+
+use super::Mortar;
+use super::cut::Region;
+use super::multipliers::Multiplier;
+use crate::kinematics::facets::Facets;
+use crate::kinematics::surface::Surface;
+use crate::pair::{Pair, PairEvent, Pairing, in_order};
+use crate::places::Places;
+use crate::rows::Rows;
+
+/// The facets of a side that are surfaces, from the starts of its chains on.
+pub(super) fn along(side: &Surface) -> Vec<usize> {
+    let mut order = Vec::new();
+    let mut seen = vec![false; side.facets()];
+    let is_start = |facet: &usize| side.neighbour_of_side(*facet, false).is_none();
+    // Loops, which have no start, come last.
+    let starts = (0..side.facets()).filter(is_start).chain(0..side.facets());
+    for start in starts.filter(|&facet| !side.is_mirror(facet)) {
+        let mut next = Some(start);
+        while let Some(facet) = next.filter(|&facet| !seen[facet]) {
+            seen[facet] = true;
+            order.push(facet);
+            next = side.neighbour_of_side(facet, true);
+        }
+    }
+    order
+}
+
+/// First and last place of facets in the order of the primary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Window {
+    first: usize,
+    last: usize,
+}
+
+impl Window {
+    fn union(self, other: Self) -> Self {
+        Self { first: self.first.min(other.first), last: self.last.max(other.last) }
+    }
+}
+
+impl Mortar {
+    /// The facets of the window of a pair.
+    pub(super) fn window(&self, pair: &Pair) -> impl Iterator<Item = usize> + Clone + '_ {
+        let Window { first, last } = self.places_of(pair);
+        self.order[first..=last].iter().copied()
+    }
+
+    fn places_of(&self, pair: &Pair) -> Window {
+        let middle = self.place[pair.facet];
+        Window {
+            first: middle.saturating_sub(pair.reach),
+            last: (middle + pair.reach).min(self.order.len() - 1),
+        }
+    }
+
+    /// A window around others, as wide on both sides of its middle.
+    fn set_window(&self, pair: &mut Pair, Window { first, last }: Window) {
+        let middle = usize::midpoint(first, last);
+        pair.facet = self.order[middle];
+        pair.reach = (middle - first).max(last - middle);
+    }
+
+    /// Finds the windows of all multipliers that may come into contact between two positions.
+    /// Returns whether anything but an inactive pair changed.
+    pub(super) fn find_windows(
+        &self,
+        before: &[f64],
+        now: &[f64],
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+    ) -> bool {
+        let [before, now] = [before, now].map(|y| Places::new(y, 2));
+        let faced = self.faced([before, now], pairing.margin);
+        let mut known = std::mem::take(&mut pairing.pairs).into_iter().peekable();
+        let mut changed = false;
+        for (number, of) in self.multipliers.iter().enumerate() {
+            let pair = known.next_if(|pair| pair.node == number);
+            let window = of.parts.iter().filter_map(|part| faced[part.facet]).reduce(Window::union);
+            let Some(window) = window else {
+                if let Some(pair) = pair.filter(|pair| pair.active) {
+                    events.push(PairEvent::SlidOff { node: of.node, facet: pair.facet });
+                    changed = true;
+                }
+                continue;
+            };
+            let (pair, is_different) = self.widened(number, pair, window, pairing.fresh);
+            changed |= is_different && (pair.active || self.penetrates(&pair, now));
+            pairing.pairs.push(pair);
+        }
+        pairing.fresh = false;
+        in_order(&mut pairing.pairs);
+        changed
+    }
+
+    /// A pair with a window that contains another one. Within a solve windows only grow.
+    fn widened(&self, number: usize, pair: Option<Pair>, window: Window, is_fresh: bool) -> (Pair, bool) {
+        let Some(mut pair) = pair else {
+            let mut pair = Pair::open(number, self.order[window.first], 0.0);
+            self.set_window(&mut pair, window);
+            return (pair, true);
+        };
+        let known = self.places_of(&pair);
+        let both = known.union(window);
+        if is_fresh {
+            self.set_window(&mut pair, window);
+        } else if both != known {
+            self.set_window(&mut pair, both);
+        }
+        (pair, both != known)
+    }
+
+    fn penetrates(&self, pair: &Pair, now: Places) -> bool {
+        use crate::kinematics::Kinematics;
+        let mut rows = Rows::new(2);
+        self.measure(&mut pair.clone(), now.flat(), &mut rows).is_ok() && rows.pop() < 0.0
+    }
+
+    /// For every facet of the secondary side that comes near the primary on its way, the facets
+    /// that it faces at either end, with one more on each side.
+    fn faced(&self, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
+        let swept = |side: &Surface, facet: usize| {
+            let hull = Hull::line(side.shape().nodes(), 1.0);
+            let nodes = side.facet(facet).nodes;
+            let [old, new] = ends.map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
+            let bounds = old.union(&new);
+            bounds.grown(margin * bounds.size())
+        };
+        let mut faced = vec![None; self.secondary.facets()];
+        let boxes: Vec<Bounds> = self.order.iter().map(|&facet| swept(&self.primary, facet)).collect();
+        let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
+        let used = self.multipliers.iter().flat_map(|Multiplier { parts, .. }| parts);
+        let mut own: Vec<usize> = used.map(|part| part.facet).collect();
+        own.sort_unstable();
+        own.dedup();
+        let own: Vec<(usize, Bounds)> = own.into_iter().map(|f| (f, swept(&self.secondary, f))).collect();
+        if own.iter().all(|(_, bounds)| !bounds.meets(&all)) {
+            return faced;
+        }
+        let of = |y: Places| self.order.iter().map(|&f| Region::of(&self.primary, f, y)).collect::<Vec<_>>();
+        let regions = ends.map(of);
+        for (facet, bounds) in own {
+            let own = self.secondary.facet(facet);
+            let mut window: Option<Window> = None;
+            for place in 0..self.order.len() {
+                let is_faced = |k: usize| regions[k][place].part_of(own, ends[k]).is_some();
+                if is_faced(0) || is_faced(1) {
+                    window.get_or_insert(Window { first: place, last: place }).last = place;
+                }
+            }
+            let Some(Window { first, last }) = window else { continue };
+            if boxes[first..=last].iter().any(|other| other.meets(&bounds)) {
+                let last = (last + 1).min(self.order.len() - 1);
+                faced[facet] = Some(Window { first: first.saturating_sub(1), last });
+            }
+        }
+        faced
+    }
+}
