@@ -3,7 +3,8 @@
 
 use super::super::spec::SKIN;
 use super::super::{
-    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Method, ObstacleMotion, Persistency, PrimarySpec,
+    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Method, ObstacleMotion, Persistency,
+    PrimarySpec,
 };
 use super::{Check, Node};
 

@@ -59,7 +59,9 @@ impl<N: Kinematics, B: Kinematics> Kinematics for Joined<N, B> {
     }
 
     fn nodes(&self) -> usize {
-        self.nodes.nodes() + self.between.nodes()
+        let first = self.nodes.nodes();
+        // Multipliers of a mortar are no nodes, and come first.
+        if first < self.count() { first } else { first + self.between.nodes() }
     }
 
     fn rubbing(&self) -> usize {
@@ -147,6 +149,11 @@ impl<N: Kinematics, B: Kinematics> Kinematics for Joined<N, B> {
         let measured = kind.measure(&mut local, y, rows);
         *pair = Pair { node: pair.node, ..local };
         measured
+    }
+
+    fn nearest(&self, pair: &Pair, gap: f64, y: &[f64]) -> f64 {
+        let (kind, node) = self.of(pair.node);
+        kind.nearest(&Pair { node, ..*pair }, gap, y)
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {

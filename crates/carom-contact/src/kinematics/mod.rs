@@ -164,6 +164,12 @@ pub trait Kinematics: Send + Sync {
     /// overwrites the first `(n·D)²` entries of `curvature`, row-major.
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]);
 
+    /// Smallest gap at positions `y` on the part of the surface for which a pair with this gap
+    /// stands: of a node its own.
+    fn nearest(&self, _pair: &Pair, gap: f64, _y: &[f64]) -> f64 {
+        gap
+    }
+
     /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per
     /// tangent: H_α·Δy is the tangential motion of the first node relative to the other side, which
     /// turns with it. A slip from y₀ to y₁ is H·(y₁ − y₀) at their midpoint, where every finite

@@ -121,9 +121,9 @@ impl<'a> ContactUpdate<'a> {
         // A spring exerts no force before it is compressed.
         let constraints =
             model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
-        for (k, _) in constraints {
+        for (k, contact) in constraints {
             for (pair, row) in now.at.pairings[k].pairs.iter_mut().zip(now.rows[k].iter()) {
-                if row.gap <= INITIAL_GAP * model.scale {
+                if contact.kinematics.nearest(pair, row.gap, &now.y) <= INITIAL_GAP * model.scale {
                     (pair.active, changed) = (true, true);
                 }
             }

@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
-    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Kinematics, Mortar, NodeToFacet, NodeToObstacle,
-    NodeToPatch, NodesWithDepth, Outward, Surface, TipToFacet, WithEdges, WithTips,
+    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Joined, Kinematics, Mortar, NodeToFacet,
+    NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Surface, TipToFacet, WithEdges, WithTips,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
 
@@ -71,8 +71,26 @@ impl Bodies<'_> {
         let both = BothSides::new(nodes, others);
         match spec.method {
             case::Method::NodeToSegment => Box::new(both),
-            case::Method::Mortar => Box::new(Mortar::new(opposite, side, self.reference, both)),
+            case::Method::Mortar => {
+                let corners = BothSides::new(
+                    self.corners([secondary, primary], [&opposite, &side]),
+                    self.corners([primary, secondary], [&side, &opposite]),
+                );
+                Box::new(Joined::new(Mortar::new(opposite, side, self.reference, both), corners))
+            }
         }
+    }
+
+    /// The corners of a side against the facets of another one, which they may enter a little: a
+    /// gap that is zero on average does not keep a corner out.
+    fn corners(&self, [of, into]: [&Side; 2], [own, other]: [&Surface; 2]) -> NodeToFacet {
+        let corners = own.corners(self.reference);
+        let NodesWithDepth { nodes, depths } = self.others(of, &[], into, &[]);
+        let may_enter = nodes.into_iter().zip(depths).filter(|(node, _)| corners.contains(node));
+        let (nodes, depths) = may_enter.unzip();
+        NodeToFacet::new(nodes, other.clone(), Detection::ClosestPoint)
+            .with_allowed(depths)
+            .of_body(own.clone())
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {

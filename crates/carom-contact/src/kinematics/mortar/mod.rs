@@ -174,6 +174,10 @@ impl Kinematics for Mortar {
         Ok(())
     }
 
+    fn nearest(&self, pair: &Pair, gap: f64, y: &[f64]) -> f64 {
+        self.nearest_of(pair, Places::new(y, 2)).map_or(gap, |nearest| nearest.min(gap))
+    }
+
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
         let stencil = self.stencil(pair);
         curvature.fill(0.0);

@@ -133,4 +133,19 @@ impl Mortar {
         }
         Ok(samples)
     }
+
+    /// The smallest gap of a pair at the ends of facets, of either side, on its part of the
+    /// secondary side.
+    pub(super) fn nearest_of(&self, pair: &Pair, y: Places) -> Option<f64> {
+        const ENDS: [[f64; 2]; 2] = [[-1.0, 0.0], [1.0, 0.0]];
+        let gaps = self.multipliers[pair.node].parts.iter().flat_map(|part| {
+            let own = self.secondary.facet(part.facet);
+            let points = cut::points(own, &self.primary, self.window(pair), &ENDS, y);
+            points.into_iter().map(move |at| {
+                let place = own.at(y, at.xi).position;
+                self.primary.gap(at.facet, at.eta, place, y)
+            })
+        });
+        gaps.min_by(f64::total_cmp)
+    }
 }
