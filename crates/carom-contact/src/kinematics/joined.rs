@@ -7,7 +7,7 @@ use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::Tip;
 use super::space::{EdgeToEdge, NodeToPatch};
 use super::tip_to_facet::TipToFacet;
-use super::{BothSides, Kinematics, Passed};
+use super::{BothSides, Kinematics, NodalPressure, Passed};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -154,6 +154,16 @@ impl<N: Kinematics, B: Kinematics> Kinematics for Joined<N, B> {
     fn nearest(&self, pair: &Pair, gap: f64, y: &[f64]) -> f64 {
         let (kind, node) = self.of(pair.node);
         kind.nearest(&Pair { node, ..*pair }, gap, y)
+    }
+
+    fn is_of_field(&self, node: usize) -> bool {
+        let (kind, node) = self.of(node);
+        kind.is_of_field(node)
+    }
+
+    fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {
+        let own = &pairs[..pairs.partition_point(|pair| pair.node < self.count())];
+        self.nodes.pressure_field(own, y, thickness)
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {

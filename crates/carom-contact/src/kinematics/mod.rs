@@ -58,6 +58,17 @@ pub(crate) use way::amplification;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
+/// Contact pressure of a field at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodalPressure {
+    /// Global number of the node.
+    pub node: usize,
+    /// Force per area of the deformed surface, ≥ 0.
+    pub actual: f64,
+    /// Force per area of the reference surface, ≥ 0.
+    pub nominal: f64,
+}
+
 /// A method to find pairs of two sides and to measure their gaps.
 pub trait Kinematics: Send + Sync {
     /// Global numbers of the secondary nodes. In contact of a side with itself all nodes occur
@@ -154,7 +165,8 @@ pub trait Kinematics: Send + Sync {
     fn start_step(&self, _pair: &mut Pair, _y: &[f64]) {}
 
     /// Adds the row of a pair at positions `y` to `rows`. Sets `pair.xi` to the closest point,
-    /// unless contact points are frozen.
+    /// unless contact points are frozen. A pair whose part of the surface faces nothing any more is
+    /// opened.
     ///
     /// # Errors
     /// If there is no unique closest point; no row is added.
@@ -168,6 +180,18 @@ pub trait Kinematics: Send + Sync {
     /// stands: of a node its own.
     fn nearest(&self, _pair: &Pair, gap: f64, _y: &[f64]) -> f64 {
         gap
+    }
+
+    /// Whether a secondary node, given by index, stands for a coefficient of a pressure field.
+    fn is_of_field(&self, _node: usize) -> bool {
+        false
+    }
+
+    /// Pressures at the nodes of the secondary side, where the pairs are coefficients of a pressure
+    /// field; none where they are forces on nodes. `y`: positions; `thickness`: of the
+    /// bodies.
+    fn pressure_field(&self, _pairs: &[Pair], _y: &[f64], _thickness: f64) -> Vec<NodalPressure> {
+        Vec::new()
     }
 
     /// Adds the rows H_α of the slip of a pair measured at `y`, over the nodes of its gap, one per

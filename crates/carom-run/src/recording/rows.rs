@@ -129,11 +129,13 @@ struct Opposed {
 
 fn opposed(contact: &Contact, pair: &Pair, state: &State) -> Opposed {
     let mut rows = contact::Rows::new(contact.facets[0].0.dimension());
+    let node = contact.kinematics.secondary()[pair.node];
     if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
-        let node = contact.kinematics.secondary()[pair.node];
         return Opposed { gap: f64::NAN, normal: [f64::NAN; 3], shares: vec![(node, 1.0)] };
     }
     let row = rows.row(0);
     let gap = row.gap - contact.kinematics.allowed(pair.node);
-    Opposed { gap, normal: row.normal(), shares: row.shares().collect() }
+    let is_of_field = contact.kinematics.is_of_field(pair.node);
+    let shares = if is_of_field { vec![(node, 1.0)] } else { row.shares().collect() };
+    Opposed { gap, normal: row.normal(), shares }
 }

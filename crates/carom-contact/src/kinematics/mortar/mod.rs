@@ -7,6 +7,7 @@
 //! positions alone.
 
 mod cut;
+mod field;
 mod multipliers;
 mod weighted;
 mod windows;
@@ -19,7 +20,7 @@ use self::weighted::Sample;
 use super::facets::Facets;
 use super::passed::Passed;
 use super::surface::Surface;
-use super::{BothSides, Kinematics, NodeToFacet};
+use super::{BothSides, Kinematics, NodalPressure, NodeToFacet};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -176,6 +177,14 @@ impl Kinematics for Mortar {
 
     fn nearest(&self, pair: &Pair, gap: f64, y: &[f64]) -> f64 {
         self.nearest_of(pair, Places::new(y, 2)).map_or(gap, |nearest| nearest.min(gap))
+    }
+
+    fn is_of_field(&self, _: usize) -> bool {
+        true
+    }
+
+    fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {
+        self.field(pairs, Places::new(y, 2), thickness)
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {

@@ -1,0 +1,68 @@
+//! The pressure field of a mortar contact at the nodes of the secondary side:
+//!
+//! ```text
+//! p(ξ) = Σ_j p_j B_j(ξ),   p_j = −λ_j / (t A_j)
+//! ```
+//!
+//! per area of the reference surface, of a body of thickness t; per area of the deformed surface it
+//! is p |Y'| / |y'|.
+
+use std::collections::BTreeMap;
+
+use super::Mortar;
+use super::multipliers::bernstein;
+use crate::kinematics::NodalPressure;
+use crate::pair::Pair;
+use crate::places::Places;
+
+impl Mortar {
+    /// The pressures of pairs at the nodes of their facets. At a joint, where the pressure per
+    /// deformed area jumps with the stretch, it is the mean of both sides; at a corner, where each
+    /// facet has a pressure of its own, the larger one.
+    pub(super) fn field(&self, pairs: &[Pair], y: Places, thickness: f64) -> Vec<NodalPressure> {
+        let mut coefficients: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        for pair in pairs.iter().filter(|pair| pair.active) {
+            let multiplier = &self.multipliers[pair.node];
+            for part in &multiplier.parts {
+                let coefficient = -pair.lambda / (thickness * multiplier.area);
+                coefficients.insert((part.facet, part.polynomial), coefficient);
+            }
+        }
+        let mut facets: Vec<usize> = coefficients.keys().map(|(facet, _)| *facet).collect();
+        facets.dedup();
+        let mut at_nodes: BTreeMap<usize, Vec<NodalPressure>> = BTreeMap::new();
+        for facet in facets {
+            let own = self.secondary.facet(facet);
+            for (place, &node) in own.nodes.iter().enumerate() {
+                let xi = coordinate(own.nodes.len(), place);
+                let of = |number: usize| coefficients.get(&(facet, number)).copied().unwrap_or(0.0);
+                let parts = (0..=self.degree).map(|number| of(number) * bernstein(self.degree, number, xi));
+                let nominal: f64 = parts.sum();
+                let stretch = own.at(y, xi).measure / own.at(self.reference(), xi).measure;
+                let found = NodalPressure { node, actual: nominal / stretch, nominal };
+                at_nodes.entry(node).or_default().push(found);
+            }
+        }
+        at_nodes.into_values().map(|of_facets| united(&of_facets)).collect()
+    }
+}
+
+/// Coordinate ξ of a node of a curve: both ends come first.
+fn coordinate(nodes: usize, place: usize) -> f64 {
+    match place {
+        0 => -1.0,
+        1 => 1.0,
+        _ => -1.0 + 2.0 * (place - 1) as f64 / (nodes - 1) as f64,
+    }
+}
+
+/// The pressure at a node of one facet or two.
+fn united(of_facets: &[NodalPressure]) -> NodalPressure {
+    let largest = of_facets.iter().fold(0.0_f64, |most, of| most.max(of.nominal));
+    let alike = || of_facets.iter().filter(|of| of.nominal >= (1.0 - ALIKE) * largest);
+    let actual = alike().map(|of| of.actual).sum::<f64>() / alike().count().max(1) as f64;
+    NodalPressure { node: of_facets[0].node, actual, nominal: largest }
+}
+
+/// Difference of two pressures per reference area, relative to the larger one, that is round-off.
+const ALIKE: f64 = 1e-12;
