@@ -1,6 +1,7 @@
 //! Initial overlap of the bodies of a contact: kept, or closed before the start.
 //!
-//! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run.
+//! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run, and
+//! `overlap = "touch"` also subtracts its initial distance.
 //!
 //! `overlap = "relax"` finds the equilibrium in which the gaps are closed: an interference fit. The
 //! depths that the nodes keep are reduced in stages to zero, or to the deviation of straight cells
@@ -79,7 +80,7 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     for (k, depths) in depths(model, y).iter().enumerate() {
         let contact = &model.contacts[k];
         let first = nodes.len();
-        let keeps = case.contacts[k].overlap == Overlap::KeepGap;
+        let keeps = matches!(case.contacts[k].overlap, Overlap::KeepGap | Overlap::Touch);
         for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
             let kept = if keeps { contact.kinematics.kept(place) } else { 0.0 };
             let depth = depths[place] + kept;
@@ -113,6 +114,14 @@ pub(crate) fn keep(case: &Case, model: &mut Model) {
         }
     }
     add(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
+    for (contact, spec) in model.contacts.iter_mut().zip(&case.contacts) {
+        if spec.overlap == Overlap::Touch {
+            let kinematics = &mut contact.kinematics;
+            let depth = |node| -kinematics.signed_distance(node, &model.initial_position).unwrap_or(0.0);
+            let depths: Vec<f64> = (0..kinematics.secondary().len()).map(depth).collect();
+            kinematics.keep(&depths);
+        }
+    }
 }
 
 /// Adds to the depths that the contacts keep a share of their initial overlap.

@@ -289,4 +289,7 @@ pub enum Overlap {
     Relax,
     /// Allowed: the gap of every node is larger by its depth at the start, to the end of the run.
     KeepGap,
+    /// The sides touch all over at the start: gaps and overlaps between their meshes, as those of
+    /// chords of one curve, count as zero to the end of the run.
+    Touch,
 }

@@ -84,6 +84,10 @@ impl<N: Kinematics, B: Kinematics> Kinematics for Joined<N, B> {
         kind.kept(node)
     }
 
+    fn kept_at_nodes(&self) -> Vec<(usize, f64)> {
+        [self.nodes.kept_at_nodes(), self.between.kept_at_nodes()].concat()
+    }
+
     fn roundings(&self, y: &[f64]) -> Vec<f64> {
         self.nodes.roundings(y)
     }

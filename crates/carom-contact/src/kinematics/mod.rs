@@ -101,6 +101,11 @@ pub trait Kinematics: Send + Sync {
     /// Initial depth that is kept as an overlap of a secondary node, given by index.
     fn kept(&self, node: usize) -> f64;
 
+    /// Initial depths that nodes keep, with their global numbers.
+    fn kept_at_nodes(&self) -> Vec<(usize, f64)> {
+        (0..self.nodes()).map(|node| (self.secondary()[node], self.kept(node))).collect()
+    }
+
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 

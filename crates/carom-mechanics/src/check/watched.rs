@@ -142,13 +142,12 @@ pub(crate) fn watched(model: &Model, contact: &Contact, facets: &[Vec<usize>]) -
 
 /// The depth that a contact keeps at each of its nodes.
 pub(crate) fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
-    let nodes = contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
-    nodes.map(|(k, &node)| (node, contact.kinematics.kept(k))).collect()
+    contact.kinematics.kept_at_nodes().into_iter().collect()
 }
 
 /// Whether a node of a contact keeps a depth.
 pub(crate) fn keeps(contact: &Contact) -> bool {
-    (0..contact.kinematics.nodes()).any(|node| contact.kinematics.kept(node) != 0.0)
+    contact.kinematics.kept_at_nodes().iter().any(|(_, depth)| *depth != 0.0)
 }
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.

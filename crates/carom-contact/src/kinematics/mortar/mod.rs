@@ -46,6 +46,8 @@ pub struct Mortar {
     kept: Vec<f64>,
     /// Nodes of both sides against the other one: none may pass through it.
     sides: BothSides<NodeToFacet>,
+    /// Initial depths that these nodes keep: their own, where the multipliers keep theirs.
+    sides_kept: Vec<(usize, f64)>,
 }
 
 impl Mortar {
@@ -76,7 +78,20 @@ impl Mortar {
             reference: reference.to_vec(),
             kept: Vec::new(),
             sides,
+            sides_kept: Vec::new(),
         }
+    }
+
+    /// Weighted gap of a multiplier in the reference configuration, without what it keeps.
+    fn gap_at_start(&self, multiplier: usize) -> Option<f64> {
+        Some(self.signed_distance(multiplier, &self.reference)? - self.kept(multiplier))
+    }
+
+    /// Depths in the reference configuration of the nodes of both sides in the other one.
+    fn depths_at_start(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let depth = |place: usize| -self.sides.signed_distance(place, &self.reference).unwrap_or(0.0);
+        let nodes = self.sides.secondary().iter().enumerate();
+        nodes.map(move |(place, &node)| (node, depth(place).max(0.0)))
     }
 
     fn reference(&self) -> Places<'_> {
@@ -105,6 +120,14 @@ impl Kinematics for Mortar {
 
     fn keep(&mut self, depths: &[f64]) {
         self.kept = depths.to_vec();
+        let all: f64 = (0..self.nodes.len()).filter_map(|of| self.gap_at_start(of)).map(f64::abs).sum();
+        let kept: f64 = depths.iter().map(|depth| depth.abs()).sum();
+        let share = if all > 0.0 { kept / all } else { 0.0 };
+        self.sides_kept = self.depths_at_start().map(|(node, depth)| (node, share * depth)).collect();
+    }
+
+    fn kept_at_nodes(&self) -> Vec<(usize, f64)> {
+        self.sides_kept.clone()
     }
 
     fn kept(&self, multiplier: usize) -> f64 {
