@@ -29,6 +29,7 @@ use super::projection::{Facet, FacetPoint};
 use crate::places::Places;
 
 /// Gap of a node over the point ξ of a facet in the plane, with its derivatives.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Gap {
     pub(crate) at: FacetPoint,
     pub(crate) shape: LineShape,

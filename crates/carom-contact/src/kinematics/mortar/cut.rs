@@ -22,6 +22,7 @@ use crate::places::Places;
 const ROUND_OFF: f64 = 1e-14;
 
 /// What belongs to a facet of the primary.
+#[derive(Debug)]
 pub(super) struct Region {
     /// A line at the start of the facet: a point on it, and the direction towards the facet.
     start: [Vector<2>; 2],
@@ -52,13 +53,13 @@ impl Region {
         }
     }
 
-    /// The part of a secondary facet, in ξ, that lies in the region of a facet which it faces.
+    /// The part of a secondary facet, in ξ, that lies in the region of a facet that it faces.
     pub(super) fn part_of(&self, facet: Facet, y: Places) -> Option<[f64; 2]> {
         if facet.at(y, 0.0).normal.dot(&self.normal) >= 0.0 {
             return None;
         }
-        let from = part_where(|xi| height(facet, y, xi, self.start, 1.0))?;
-        let to = part_where(|xi| height(facet, y, xi, self.end, -1.0))?;
+        let from = part_beyond(facet, y, self.start, 1.0)?;
+        let to = part_beyond(facet, y, self.end, -1.0)?;
         let part = [from[0].max(to[0]), from[1].min(to[1])];
         (part[1] - part[0] > ROUND_OFF).then_some(part)
     }
@@ -71,21 +72,16 @@ impl Region {
     }
 }
 
-/// Height of a point of a facet over a line, times a sign, and its derivative by ξ.
-fn height(facet: Facet, y: Places, xi: f64, [on, towards]: [Vector<2>; 2], sign: f64) -> [f64; 2] {
-    let at = facet.seen_from(on, y, xi);
-    [sign * at.position.dot(&towards), sign * at.tangent.dot(&towards)]
-}
-
-/// The part of −1 … 1 where a function with at most one root is not negative; `of` returns the
-/// function and its derivative.
-fn part_where(of: impl Fn(f64) -> [f64; 2]) -> Option<[f64; 2]> {
-    let [at_start, at_end] = [of(-1.0)[0], of(1.0)[0]];
-    let root = |sign: f64| {
+/// The part of a facet, in ξ, on one side of a line that it crosses once at most: where (x − x₀)·b
+/// times a sign is not negative.
+fn part_beyond(facet: Facet, y: Places, [on, along]: [Vector<2>; 2], sign: f64) -> Option<[f64; 2]> {
+    let [at_start, at_end] = [0, 1].map(|end| sign * (y.at(facet.nodes[end]) - on).dot(&along));
+    let root = |rises: f64| {
         let start = -1.0 + 2.0 * at_start / (at_start - at_end);
         bisected(-1.0, 1.0, start, |xi| {
-            let [value, slope] = of(xi);
-            (sign * value, sign * slope)
+            let at = facet.seen_from(on, y, xi);
+            let factor = sign * rises;
+            (factor * at.position.dot(&along), factor * at.tangent.dot(&along))
         })
     };
     match [at_start >= 0.0, at_end >= 0.0] {
@@ -109,61 +105,59 @@ pub(super) struct Opposed {
     pub(super) eta: f64,
 }
 
-/// The points of quadrature of a secondary facet at positions `y`, against the `facets` of the
-/// primary; `rule`: points and weights on −1 … 1.
+/// The part of a secondary facet that lies opposite to a facet of the primary.
+struct Part<'a> {
+    ends: [f64; 2],
+    facet: usize,
+    region: &'a Region,
+}
+
+/// The points of quadrature of a secondary facet at positions `y`, against the facets of the
+/// primary with their regions; `rule`: points and weights on −1 … 1.
 pub(super) fn points(
     own: Facet,
     primary: &Surface,
-    facets: impl Iterator<Item = usize>,
+    regions: &[(usize, Region)],
     rule: &[[f64; 2]],
     y: Places,
 ) -> Vec<Opposed> {
-    let mut parts: Vec<([f64; 2], usize, Region)> = Vec::new();
-    for facet in facets {
-        let region = Region::of(primary, facet, y);
-        if let Some(part) = region.part_of(own, y) {
-            parts.push((part, facet, region));
+    let mut parts = Vec::new();
+    for (facet, region) in regions {
+        if let Some(ends) = region.part_of(own, y) {
+            parts.push(Part { ends, facet: *facet, region });
         }
     }
-    let mut ends: Vec<f64> = parts.iter().flat_map(|(part, ..)| *part).collect();
+    let mut ends: Vec<f64> = parts.iter().flat_map(|part| part.ends).collect();
     ends.sort_unstable_by(f64::total_cmp);
-    let own_length = (own.at(y, 1.0).position - own.at(y, -1.0).position).norm();
+    let own_length = (y.at(own.nodes[1]) - y.at(own.nodes[0])).norm();
     let mut found = Vec::new();
     for piece in ends.windows(2).filter(|piece| piece[1] - piece[0] > ROUND_OFF) {
-        let [from, to] = [piece[0], piece[1]];
-        let middle = 0.5 * (from + to);
-        // Where walls stand behind each other, the nearest one counts.
-        let nearest = parts
-            .iter()
-            .filter(|(part, ..)| part[0] <= middle && middle <= part[1])
-            .filter_map(|(_, facet, region)| {
-                let opposed = opposed(own, primary, *facet, region, [middle, 0.0], y)?;
-                let gap = primary.gap(*facet, opposed.eta, own.at(y, middle).position, y);
-                // Behind a facet by more than a facet's length, a point is not inside the body there.
-                (gap > -region.length.max(own_length)).then_some((gap.abs(), *facet, region))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, facet, region)) = nearest else { continue };
+        let middle = 0.5 * (piece[0] + piece[1]);
+        let half = 0.5 * (piece[1] - piece[0]);
+        let mut over = parts.iter().filter(|part| part.ends[0] <= middle && middle <= part.ends[1]);
+        // Where walls stand behind each other, the nearest one counts. Behind a facet by more than
+        // a facet's length, a point is not inside the body there.
+        let gap = |part: &&Part| {
+            let Opposed { facet, eta, .. } = opposed(own, primary, part, [middle, 0.0], y)?;
+            let gap = primary.gap(facet, eta, own.at(y, middle).position, y);
+            (gap > -part.region.length.max(own_length)).then_some(gap.abs())
+        };
+        let nearest =
+            over.by_ref().filter_map(|part| Some((gap(&part)?, part))).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, part)) = nearest else { continue };
         for [at, weight] in rule {
-            let half = 0.5 * (to - from);
-            found.extend(opposed(own, primary, facet, region, [middle + half * at, half * weight], y));
+            found.extend(opposed(own, primary, part, [middle + half * at, half * weight], y));
         }
     }
     found
 }
 
 /// A point of a secondary facet over a facet of the primary; none without a unique closest point.
-fn opposed(
-    own: Facet,
-    primary: &Surface,
-    facet: usize,
-    region: &Region,
-    [xi, weight]: [f64; 2],
-    y: Places,
-) -> Option<Opposed> {
+fn opposed(own: Facet, primary: &Surface, part: &Part, [xi, weight]: [f64; 2], y: Places) -> Option<Opposed> {
     let point = own.at(y, xi).position;
-    let eta = primary.facet(facet).closest_from(y, point, region.between(point), BEYOND)?;
-    Some(Opposed { xi, weight, facet, eta })
+    let start = part.region.between(point);
+    let eta = primary.facet(part.facet).closest_from(y, point, start, BEYOND)?;
+    Some(Opposed { xi, weight, facet: part.facet, eta })
 }
 
 /// |η| up to which a closest point is followed past the end of a facet: at a kink of 30°, a point

@@ -8,13 +8,17 @@
 
 mod cut;
 mod field;
+mod measured;
 mod multipliers;
 mod weighted;
 mod windows;
 
+use std::sync::Mutex;
+
 use carom_algebra::Vector;
 use carom_solid::quadrature;
 
+use self::measured::Cache;
 use self::multipliers::{Multiplier, degree_of_pressure, multipliers};
 use self::weighted::Sample;
 use super::facets::Facets;
@@ -42,6 +46,11 @@ pub struct Mortar {
     /// Points and weights of quadrature on −1 … 1.
     rule: Vec<[f64; 2]>,
     reference: Vec<f64>,
+    /// Nodes of both sides.
+    surface: Vec<usize>,
+    /// Whether each secondary facet belongs to a multiplier.
+    used: Vec<bool>,
+    cache: Mutex<Cache>,
     /// Initial depth that is kept for each multiplier; empty if all are zero.
     kept: Vec<f64>,
     /// Nodes of both sides against the other one: none may pass through it.
@@ -66,7 +75,17 @@ impl Mortar {
         let degree_of = |side: &Surface| side.shape().degree();
         let exact = 2 * degree_of(&secondary).max(degree_of(&primary)) + 3;
         let rule = quadrature::line(exact).iter().map(|(xi, weight)| [xi[0], weight]).collect();
+        let mut used = vec![false; secondary.facets()];
+        let parts = multipliers.iter().flat_map(|of| &of.parts);
+        parts.for_each(|part| used[part.facet] = true);
+        let facets = |side: &Surface| side.nodes[..side.facets() * side.shape.nodes()].to_vec();
+        let mut surface = [facets(&secondary), facets(&primary)].concat();
+        surface.sort_unstable();
+        surface.dedup();
         Self {
+            surface,
+            used,
+            cache: measured::empty(),
             nodes: multipliers.iter().map(|of| of.node).collect(),
             degree: degree_of_pressure(degree_of(&secondary)),
             secondary,
@@ -100,11 +119,9 @@ impl Mortar {
 
     /// Moves the recorded contact point of a pair to the closest point of the sample that weighs
     /// most.
-    fn mark(&self, pair: &mut Pair, samples: &[Sample]) {
+    fn mark(pair: &mut Pair, samples: &[Sample]) {
         let heaviest = samples.iter().max_by(|a, b| a.share.total_cmp(&b.share));
-        if let Some(sample) = heaviest.filter(|sample| self.window(pair).any(|facet| facet == sample.facet)) {
-            pair.xi = sample.eta;
-        }
+        pair.xi = heaviest.map_or(pair.xi, |sample| sample.eta);
     }
 }
 
@@ -175,7 +192,7 @@ impl Kinematics for Mortar {
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let samples = self.samples(pair, Places::new(y, 2))?;
-        self.mark(pair, &samples);
+        Self::mark(pair, &samples);
         if samples.is_empty() {
             if pair.active {
                 return Err(ContactError::Lost {
@@ -187,12 +204,13 @@ impl Kinematics for Mortar {
             rows.push_open();
             return Ok(());
         }
+        let facing = self.primary.shape.nodes();
         let stencil = self.stencil(pair);
         let mut gap = self.kept(pair.node);
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         for sample in &samples {
             gap += sample.share * sample.gap.distance;
-            stencil.add_row(sample, sample.gap.gradient(sample.others.len()), &mut slopes);
+            stencil.add_row(self, sample, sample.gap.gradient(facing), &mut slopes);
         }
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
         Ok(())
@@ -215,8 +233,8 @@ impl Kinematics for Mortar {
         curvature.fill(0.0);
         let mut of_sample = [0.0; OF_SAMPLE];
         for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            sample.gap.curvature_into(sample.others.len(), 2, &mut of_sample);
-            stencil.add_matrix(&sample, &of_sample, curvature);
+            sample.gap.curvature_into(self.primary.shape.nodes(), 2, &mut of_sample);
+            stencil.add_matrix(self, &sample, &of_sample, curvature);
         }
     }
 
@@ -224,7 +242,7 @@ impl Kinematics for Mortar {
         let stencil = self.stencil(pair);
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         for sample in self.samples(pair, Places::new(y, 2))? {
-            stencil.add_row(&sample, sample.gap.slip(sample.others.len()), &mut slopes);
+            stencil.add_row(self, &sample, sample.gap.slip(self.primary.shape.nodes()), &mut slopes);
         }
         rows.push_of_many(0.0, &stencil.nodes, stencil.own, &slopes);
         Ok(())
@@ -235,8 +253,8 @@ impl Kinematics for Mortar {
         matrix.fill(0.0);
         let mut of_sample = [0.0; OF_SAMPLE];
         for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            sample.gap.slip_derivative_into(sample.others.len(), &mut of_sample);
-            stencil.add_matrix(&sample, &of_sample, matrix);
+            sample.gap.slip_derivative_into(self.primary.shape.nodes(), &mut of_sample);
+            stencil.add_matrix(self, &sample, &of_sample, matrix);
         }
     }
 }

@@ -13,24 +13,24 @@
 use carom_algebra::Vector;
 
 use super::Mortar;
-use super::cut;
+use super::cut::{self, Region};
+use super::measured::Measured;
 use super::multipliers::{Part, bernstein};
 use crate::kinematics::gap::Gap;
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;
 
-/// A point of quadrature with the gap there.
-pub(super) struct Sample<'a> {
+/// A point of quadrature in the weighted gap of a multiplier.
+pub(super) struct Sample {
     /// Weight of the gap in the weighted gap.
     pub(super) share: f64,
-    /// Weights N_a of the nodes of the secondary facet in the point.
-    pub(super) values: [f64; 4],
-    pub(super) own: &'a [usize],
+    /// The secondary facet, and the weights N_a of its nodes in the point.
+    own: usize,
+    values: [f64; 4],
     pub(super) gap: Gap,
     /// Facet of the primary, and the closest point on it.
     pub(super) facet: usize,
     pub(super) eta: f64,
-    pub(super) others: &'a [usize],
 }
 
 /// The nodes of a weighted gap: those of the secondary side, then those of the primary.
@@ -40,52 +40,81 @@ pub(super) struct Stencil {
     pub(super) own: usize,
 }
 
+/// Most nodes of a facet in the plane.
+const NODES: usize = 4;
+
+/// Places of the nodes of two facets in a stencil.
+struct Placed {
+    own: [usize; NODES],
+    others: [usize; NODES],
+}
+
+/// A node of a stencil on which the point or a node of the primary facet depends, with its weight.
+type Weighted = (usize, f64);
+
 impl Stencil {
-    /// Places in the stencil of the nodes of a sample, with their weights: the node that a gap is
-    /// made for stands for the point, those of the facet follow.
-    fn places(&self, sample: &Sample) -> Vec<Vec<(usize, f64)>> {
-        let place =
-            |of: &[usize], node: usize| of.iter().position(|&other| other == node).unwrap_or_default();
-        let [own, others] = [&self.nodes[..self.own], &self.nodes[self.own..]];
-        let point = sample.own.iter().zip(sample.values).map(|(&node, value)| (place(own, node), value));
-        let facet = sample.others.iter().map(|&node| vec![(self.own + place(others, node), 1.0)]);
-        std::iter::once(point.collect()).chain(facet).collect()
+    fn place(&self, mortar: &Mortar, sample: &Sample) -> Placed {
+        let place = |from: usize, to: usize, node: usize| {
+            from + self.nodes[from..to].iter().position(|&other| other == node).unwrap_or_default()
+        };
+        let mut placed = Placed { own: [0; NODES], others: [0; NODES] };
+        let own = mortar.secondary.facet(sample.own).nodes;
+        let others = mortar.primary.facet(sample.facet).nodes;
+        placed.own.iter_mut().zip(own).for_each(|(at, &node)| *at = place(0, self.own, node));
+        let end = self.nodes.len();
+        placed.others.iter_mut().zip(others).for_each(|(at, &node)| *at = place(self.own, end, node));
+        placed
     }
 
-    /// Adds a row over a sample's nodes to one over the stencil.
+    /// Adds a row over a point and the nodes of the facet opposite to one over the stencil.
     pub(super) fn add_row(
         &self,
+        mortar: &Mortar,
         sample: &Sample,
         slopes: impl Iterator<Item = Vector<2>>,
         sum: &mut [Vector<2>],
     ) {
-        for (places, slope) in self.places(sample).iter().zip(slopes) {
-            for &(place, weight) in places {
-                sum[place] += slope * (sample.share * weight);
-            }
+        let placed = self.place(mortar, sample);
+        for (p, slope) in slopes.enumerate() {
+            placed.each(p, sample, |(place, weight)| sum[place] += slope * (sample.share * weight));
         }
     }
 
-    /// Adds a matrix over a sample's nodes, two components each, to one over the stencil.
-    pub(super) fn add_matrix(&self, sample: &Sample, matrix: &[f64], sum: &mut [f64]) {
-        let places = self.places(sample);
-        let n = 2 * places.len();
+    /// Adds a matrix over a point and the nodes of the facet opposite, two components each, to one
+    /// over the stencil.
+    pub(super) fn add_matrix(&self, mortar: &Mortar, sample: &Sample, matrix: &[f64], sum: &mut [f64]) {
+        let placed = self.place(mortar, sample);
+        let count = 1 + mortar.primary.shape.nodes();
+        let n = 2 * count;
         let size = 2 * self.nodes.len();
-        for (p, rows) in places.iter().enumerate() {
-            for (q, columns) in places.iter().enumerate() {
-                for &(row, of_row) in rows {
-                    for &(column, of_column) in columns {
+        for p in 0..count {
+            placed.each(p, sample, |(row, of_row)| {
+                for q in 0..count {
+                    placed.each(q, sample, |(column, of_column)| {
                         let weight = sample.share * of_row * of_column;
                         for i in 0..2 {
-                            for k in 0..2 {
-                                sum[(2 * row + i) * size + 2 * column + k] +=
-                                    weight * matrix[(2 * p + i) * n + 2 * q + k];
-                            }
+                            let from = (2 * p + i) * n + 2 * q;
+                            let to = (2 * row + i) * size + 2 * column;
+                            sum[to] += weight * matrix[from];
+                            sum[to + 1] += weight * matrix[from + 1];
                         }
-                    }
+                    });
                 }
-            }
+            });
         }
+    }
+}
+
+impl Placed {
+    /// Calls a function with the nodes of the stencil on which number `p` of a gap's nodes depends:
+    /// the point, number 0, or a node of the facet opposite.
+    fn each(&self, p: usize, sample: &Sample, mut of: impl FnMut(Weighted)) {
+        if p > 0 {
+            of((self.others[p - 1], 1.0));
+            return;
+        }
+        let nodes = self.own.iter().zip(sample.values);
+        nodes.filter(|(_, value)| *value != 0.0).for_each(|(&place, value)| of((place, value)));
     }
 }
 
@@ -104,48 +133,51 @@ impl Mortar {
         Stencil { nodes, own }
     }
 
-    /// The gaps of a pair at the points of quadrature.
+    /// The gaps of a pair at the points of quadrature that face its window.
     ///
     /// # Errors
     /// If a point has no unique closest point on the primary.
-    pub(super) fn samples<'a>(&'a self, pair: &Pair, y: Places<'a>) -> Result<Vec<Sample<'a>>, ContactError> {
+    pub(super) fn samples(&self, pair: &Pair, y: Places) -> Result<Vec<Sample>, ContactError> {
         let multiplier = &self.multipliers[pair.node];
-        let mut samples = Vec::new();
-        for &Part { facet, polynomial } in &multiplier.parts {
-            let own = self.secondary.facet(facet);
-            for point in cut::points(own, &self.primary, self.window(pair), &self.rule, y) {
-                let measure = own.at(self.reference(), point.xi).measure;
-                let value = bernstein(self.degree, polynomial, point.xi);
-                let opposite = self.primary.facet(point.facet);
-                let gap = Gap::closest(opposite, y, own.at(y, point.xi).position, point.eta);
-                let at = Pair { facet: point.facet, xi: point.eta, ..*pair };
-                ContactError::unless_regular(multiplier.node, &at, gap.a)?;
-                samples.push(Sample {
-                    share: value * point.weight * measure / multiplier.area,
-                    values: own.shape.at(point.xi).values,
-                    own: own.nodes,
-                    gap,
-                    facet: point.facet,
-                    eta: point.eta,
-                    others: opposite.nodes,
-                });
+        let window = self.places_of(pair);
+        self.at(y, |of_facets| {
+            let mut samples = Vec::new();
+            for &Part { facet, polynomial } in &multiplier.parts {
+                let shape = self.secondary.facet(facet).shape;
+                for Measured { at, gap, area } in &of_facets[facet] {
+                    if !window.contains(self.place[at.facet]) {
+                        continue;
+                    }
+                    let of_point = Pair { facet: at.facet, xi: at.eta, ..*pair };
+                    ContactError::unless_regular(multiplier.node, &of_point, gap.a)?;
+                    samples.push(Sample {
+                        share: bernstein(self.degree, polynomial, at.xi) * area / multiplier.area,
+                        own: facet,
+                        values: shape.at(at.xi).values,
+                        gap: *gap,
+                        facet: at.facet,
+                        eta: at.eta,
+                    });
+                }
             }
-        }
-        Ok(samples)
+            Ok(samples)
+        })
     }
 
     /// The smallest gap of a pair at the ends of facets, of either side, on its part of the
     /// secondary side.
     pub(super) fn nearest_of(&self, pair: &Pair, y: Places) -> Option<f64> {
         const ENDS: [[f64; 2]; 2] = [[-1.0, 0.0], [1.0, 0.0]];
-        let gaps = self.multipliers[pair.node].parts.iter().flat_map(|part| {
+        let region = |facet: usize| (facet, Region::of(&self.primary, facet, y));
+        let regions: Vec<(usize, Region)> = self.window(pair).map(region).collect();
+        let mut nearest: Option<f64> = None;
+        for part in &self.multipliers[pair.node].parts {
             let own = self.secondary.facet(part.facet);
-            let points = cut::points(own, &self.primary, self.window(pair), &ENDS, y);
-            points.into_iter().map(move |at| {
-                let place = own.at(y, at.xi).position;
-                self.primary.gap(at.facet, at.eta, place, y)
-            })
-        });
-        gaps.min_by(f64::total_cmp)
+            for at in cut::points(own, &self.primary, &regions, &ENDS, y) {
+                let gap = self.primary.gap(at.facet, at.eta, own.at(y, at.xi).position, y);
+                nearest = Some(nearest.map_or(gap, |least| least.min(gap)));
+            }
+        }
+        nearest
     }
 }

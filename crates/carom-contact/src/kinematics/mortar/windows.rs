@@ -5,7 +5,6 @@ use carom_solid::{Bounds, Hull};
 
 use super::Mortar;
 use super::cut::Region;
-use super::multipliers::Multiplier;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
 use crate::pair::{Pair, PairEvent, Pairing, in_order};
@@ -32,12 +31,17 @@ pub(super) fn along(side: &Surface) -> Vec<usize> {
 
 /// First and last place of facets in the order of the primary.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Window {
+pub(super) struct Window {
     first: usize,
     last: usize,
 }
 
 impl Window {
+    /// Whether it contains a place.
+    pub(super) fn contains(self, place: usize) -> bool {
+        (self.first..=self.last).contains(&place)
+    }
+
     fn union(self, other: Self) -> Self {
         Self { first: self.first.min(other.first), last: self.last.max(other.last) }
     }
@@ -50,7 +54,8 @@ impl Mortar {
         self.order[first..=last].iter().copied()
     }
 
-    fn places_of(&self, pair: &Pair) -> Window {
+    /// First and last place of the window of a pair.
+    pub(super) fn places_of(&self, pair: &Pair) -> Window {
         let middle = self.place[pair.facet];
         Window {
             first: middle.saturating_sub(pair.reach),
@@ -121,7 +126,7 @@ impl Mortar {
     }
 
     /// For every facet of the secondary side that comes near the primary on its way, the facets
-    /// that it faces at either end, with one more on each side.
+    /// that it faces at either end.
     fn faced(&self, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
         let swept = |side: &Surface, facet: usize| {
             let hull = Hull::line(side.shape().nodes(), 1.0);
@@ -133,11 +138,8 @@ impl Mortar {
         let mut faced = vec![None; self.secondary.facets()];
         let boxes: Vec<Bounds> = self.order.iter().map(|&facet| swept(&self.primary, facet)).collect();
         let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
-        let used = self.multipliers.iter().flat_map(|Multiplier { parts, .. }| parts);
-        let mut own: Vec<usize> = used.map(|part| part.facet).collect();
-        own.sort_unstable();
-        own.dedup();
-        let own: Vec<(usize, Bounds)> = own.into_iter().map(|f| (f, swept(&self.secondary, f))).collect();
+        let own = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
+        let own: Vec<(usize, Bounds)> = own.map(|facet| (facet, swept(&self.secondary, facet))).collect();
         if own.iter().all(|(_, bounds)| !bounds.meets(&all)) {
             return faced;
         }
@@ -154,8 +156,7 @@ impl Mortar {
             }
             let Some(Window { first, last }) = window else { continue };
             if boxes[first..=last].iter().any(|other| other.meets(&bounds)) {
-                let last = (last + 1).min(self.order.len() - 1);
-                faced[facet] = Some(Window { first: first.saturating_sub(1), last });
+                faced[facet] = Some(Window { first, last });
             }
         }
         faced
