@@ -73,19 +73,20 @@ impl Bodies<'_> {
             case::Method::NodeToSegment => Box::new(both),
             case::Method::Mortar => {
                 let corners = BothSides::new(
-                    self.corners([secondary, primary], [&opposite, &side]),
-                    self.corners([primary, secondary], [&side, &opposite]),
+                    self.corners([secondary, primary], &of_secondary[0], [&opposite, &side]),
+                    self.corners([primary, secondary], &of_primary[0], [&side, &opposite]),
                 );
                 Box::new(Joined::new(Mortar::new(opposite, side, self.reference, both), corners))
             }
         }
     }
 
-    /// The corners of a side against the facets of another one, which they may enter a little: a
-    /// gap that is zero on average does not keep a corner out.
-    fn corners(&self, [of, into]: [&Side; 2], [own, other]: [&Surface; 2]) -> NodeToFacet {
+    /// The corners of a side, but of the sides of `earlier` contacts, against the facets of another
+    /// one, which they may enter a little: a gap that is zero on average does not keep a corner
+    /// out.
+    fn corners(&self, [of, into]: [&Side; 2], earlier: &[Side], [own, other]: [&Surface; 2]) -> NodeToFacet {
         let corners = own.corners(self.reference);
-        let NodesWithDepth { nodes, depths } = self.others(of, &[], into, &[]);
+        let NodesWithDepth { nodes, depths } = self.others(of, earlier, into, &[]);
         let may_enter = nodes.into_iter().zip(depths).filter(|(node, _)| corners.contains(node));
         let (nodes, depths) = may_enter.unzip();
         NodeToFacet::new(nodes, other.clone(), Detection::ClosestPoint)

@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::Mortar;
-use super::multipliers::bernstein;
+use super::multipliers::{MOST, bernstein};
 use crate::kinematics::NodalPressure;
 use crate::pair::Pair;
 use crate::places::Places;
@@ -30,12 +30,17 @@ impl Mortar {
         }
         let mut facets: Vec<usize> = coefficients.keys().map(|(facet, _)| *facet).collect();
         facets.dedup();
+        let carriers: Vec<[usize; MOST]> =
+            self.at(y, |of_facets| of_facets.iter().map(|of| of.carriers).collect());
         let mut at_nodes: BTreeMap<usize, Vec<NodalPressure>> = BTreeMap::new();
         for facet in facets {
             let own = self.secondary.facet(facet);
             for (place, &node) in own.nodes.iter().enumerate() {
                 let xi = coordinate(own.nodes.len(), place);
-                let of = |number: usize| coefficients.get(&(facet, number)).copied().unwrap_or(0.0);
+                let of = |number: usize| {
+                    let carrier = carriers[facet][number];
+                    coefficients.get(&(facet, carrier)).copied().unwrap_or(0.0)
+                };
                 let parts = (0..=self.degree).map(|number| of(number) * bernstein(self.degree, number, xi));
                 let nominal: f64 = parts.sum();
                 let stretch = own.at(y, xi).measure / own.at(self.reference(), xi).measure;

@@ -1,10 +1,15 @@
 //! The points of quadrature of all secondary facets at the positions of the last call. Several pairs
 //! share a facet, and a state is measured more than once. A cache: it never changes a result.
+//!
+//! A multiplier of whose area hardly anything faces the primary, as beside the end of a body, would
+//! carry an arbitrary pressure. Its polynomials are added to those of a neighbour on the same facet,
+//! whose pressure then extends over them.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 
 use super::Mortar;
 use super::cut::{self, Opposed, Region};
+use super::multipliers::{MOST, Part, bernstein};
 use crate::kinematics::gap::Gap;
 use crate::places::Places;
 
@@ -17,18 +22,28 @@ pub(super) struct Measured {
     pub(super) area: f64,
 }
 
-/// The points at one configuration.
+/// A secondary facet at one configuration.
+#[derive(Debug, Default)]
+pub(super) struct Faced {
+    pub(super) points: Vec<Measured>,
+    /// For each polynomial the one whose multiplier carries it.
+    pub(super) carriers: [usize; MOST],
+}
+
+/// The facets at one configuration.
 #[derive(Debug, Default)]
 pub(super) struct Cache {
     /// Positions of the nodes of both sides.
     places: Vec<f64>,
-    /// Points of every secondary facet.
-    of_facets: Vec<Vec<Measured>>,
+    of_facets: Vec<Faced>,
 }
 
+/// Share of the area of a multiplier that must face the primary for a pressure of its own.
+const COVERED: f64 = 0.05;
+
 impl Mortar {
-    /// Calls a function with the points of every secondary facet at positions `y`.
-    pub(super) fn at<T>(&self, y: Places, of: impl FnOnce(&[Vec<Measured>]) -> T) -> T {
+    /// Calls a function with the secondary facets at positions `y`.
+    pub(super) fn at<T>(&self, y: Places, of: impl FnOnce(&[Faced]) -> T) -> T {
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let places = || self.surface.iter().flat_map(|&node| y.coordinates(node)).copied();
         if cache.places.is_empty() || !cache.places.iter().copied().eq(places()) {
@@ -39,7 +54,7 @@ impl Mortar {
         of(&cache.of_facets)
     }
 
-    fn measure_facets(&self, y: Places) -> Vec<Vec<Measured>> {
+    fn measure_facets(&self, y: Places) -> Vec<Faced> {
         let region = |&facet: &usize| (facet, Region::of(&self.primary, facet, y));
         let regions: Vec<(usize, Region)> = self.order.iter().map(region).collect();
         let of_facet = |facet: usize| {
@@ -53,14 +68,36 @@ impl Mortar {
             };
             points.into_iter().map(measured).collect()
         };
-        let is_used = |facet: &usize| self.used[*facet];
-        (0..self.secondary.facets())
-            .map(|facet| if is_used(&facet) { of_facet(facet) } else { Vec::new() })
-            .collect()
+        let points = |facet: usize| if self.used[facet] { of_facet(facet) } else { Vec::new() };
+        let points: Vec<Vec<Measured>> = (0..self.secondary.facets()).map(points).collect();
+        let carriers = self.carriers(&points);
+        points.into_iter().zip(carriers).map(|(points, carriers)| Faced { points, carriers }).collect()
     }
-}
 
-/// The cache of a new contact.
-pub(super) fn empty() -> Mutex<Cache> {
-    Mutex::default()
+    /// For each facet and polynomial the polynomial that carries it: itself, if enough of its
+    /// multiplier is covered, or else the nearest one on the facet of which that holds, or the one
+    /// that is covered most.
+    fn carriers(&self, points: &[Vec<Measured>]) -> Vec<[usize; MOST]> {
+        let mut carriers = vec![std::array::from_fn(|number| number); points.len()];
+        let mut covers = vec![[0.0; MOST]; points.len()];
+        for multiplier in &self.multipliers {
+            let of_part = |part: &Part| -> f64 {
+                let value = |point: &Measured| bernstein(self.degree, part.polynomial, point.at.xi);
+                points[part.facet].iter().map(|point| value(point) * point.area).sum()
+            };
+            let cover = multiplier.parts.iter().map(of_part).sum::<f64>() / multiplier.area;
+            multiplier.parts.iter().for_each(|part| covers[part.facet][part.polynomial] = cover);
+        }
+        for (covers, carriers) in covers.iter().zip(&mut carriers) {
+            let is_covered = |number: usize| covers[number] >= COVERED;
+            let all = 0..=self.degree;
+            for number in all.clone().filter(|&number| !is_covered(number)) {
+                let nearest = all.clone().filter(|&other| is_covered(other));
+                let most = all.clone().max_by(|&a, &b| covers[a].total_cmp(&covers[b]));
+                let carrier = nearest.min_by_key(|other| other.abs_diff(number)).or(most);
+                carriers[number] = carrier.unwrap_or(number);
+            }
+        }
+        carriers
+    }
 }

@@ -85,7 +85,7 @@ impl Mortar {
         Self {
             surface,
             used,
-            cache: measured::empty(),
+            cache: Mutex::default(),
             nodes: multipliers.iter().map(|of| of.node).collect(),
             degree: degree_of_pressure(degree_of(&secondary)),
             secondary,
@@ -194,13 +194,9 @@ impl Kinematics for Mortar {
         let samples = self.samples(pair, Places::new(y, 2))?;
         Self::mark(pair, &samples);
         if samples.is_empty() {
-            if pair.active {
-                return Err(ContactError::Lost {
-                    node: self.nodes[pair.node],
-                    facet: pair.facet,
-                    xi: pair.xi,
-                });
-            }
+            // Nothing is left for a pressure to act on.
+            pair.active = false;
+            pair.lambda = 0.0;
             rows.push_open();
             return Ok(());
         }

@@ -38,6 +38,9 @@ pub(super) struct Multiplier {
     pub(super) area: f64,
 }
 
+/// Most polynomials on a facet.
+pub(super) const MOST: usize = 3;
+
 /// Degree of the pressure on facets of a degree.
 pub(super) fn degree_of_pressure(of_facets: usize) -> usize {
     of_facets.saturating_sub(1).max(1)

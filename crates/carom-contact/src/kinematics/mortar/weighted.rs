@@ -14,7 +14,7 @@ use carom_algebra::Vector;
 
 use super::Mortar;
 use super::cut::{self, Region};
-use super::measured::Measured;
+use super::measured::{Faced, Measured};
 use super::multipliers::{Part, bernstein};
 use crate::kinematics::gap::Gap;
 use crate::pair::{ContactError, Pair};
@@ -144,14 +144,18 @@ impl Mortar {
             let mut samples = Vec::new();
             for &Part { facet, polynomial } in &multiplier.parts {
                 let shape = self.secondary.facet(facet).shape;
-                for Measured { at, gap, area } in &of_facets[facet] {
+                let Faced { points, carriers } = &of_facets[facet];
+                let carried: Vec<usize> =
+                    (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
+                for Measured { at, gap, area } in points.iter().filter(|_| !carried.is_empty()) {
                     if !window.contains(self.place[at.facet]) {
                         continue;
                     }
                     let of_point = Pair { facet: at.facet, xi: at.eta, ..*pair };
                     ContactError::unless_regular(multiplier.node, &of_point, gap.a)?;
+                    let values = carried.iter().map(|&number| bernstein(self.degree, number, at.xi));
                     samples.push(Sample {
-                        share: bernstein(self.degree, polynomial, at.xi) * area / multiplier.area,
+                        share: values.sum::<f64>() * area / multiplier.area,
                         own: facet,
                         values: shape.at(at.xi).values,
                         gap: *gap,
