@@ -305,7 +305,9 @@ fn derivative_of_direction(
             if let Ok(start) = equations.gap_at_start(k, pair, rows)
                 && contact.kinematics.measure(&mut middle, place, rows).is_ok()
             {
-                gradient.evaluate(rows.row(0), row.gap - start, place, &at.increment);
+                let measured = rows.row(0);
+                let change = if start.is_finite() { row.gap - start } else { measured.along(&at.increment) };
+                gradient.evaluate(measured, change, place, &at.increment);
                 contact.kinematics.curvature_into(&middle, place, &mut matrix);
                 gradient.derivative_into(row, &mut matrix);
             }

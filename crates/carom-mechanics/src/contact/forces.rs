@@ -132,7 +132,9 @@ impl Equations<'_> {
         let start = self.gap_at_start(k, pair, turned)?;
         self.model.contacts[k].kinematics.measure(&mut pair.clone(), place, turned)?;
         let p = turned.len() - 1;
-        gradient.evaluate(turned.row(p), gap - start, place, &at.increment);
+        // A part of a surface that faced nothing at the start had no gap that could change.
+        let change = if start.is_finite() { gap - start } else { turned.row(p).along(&at.increment) };
+        gradient.evaluate(turned.row(p), change, place, &at.increment);
         turned.gradient_mut(p).copy_from_slice(gradient.gradient());
         Ok(())
     }

@@ -21,6 +21,10 @@ use crate::places::Places;
 /// Parts of a facet, in ξ, that are not worth integrating over.
 const ROUND_OFF: f64 = 1e-14;
 
+/// Cosine of the angle from the opposite direction up to which a facet faces another one: 60°.
+/// Where they meet at a larger angle, one of them ends in a corner, which has a row of its own.
+const FACING: f64 = 0.5;
+
 /// What belongs to a facet of the primary.
 #[derive(Debug)]
 pub(super) struct Region {
@@ -53,9 +57,10 @@ impl Region {
         }
     }
 
-    /// The part of a secondary facet, in ξ, that lies in the region of a facet that it faces.
-    pub(super) fn part_of(&self, facet: Facet, y: Places) -> Option<[f64; 2]> {
-        if facet.at(y, 0.0).normal.dot(&self.normal) >= 0.0 {
+    /// The part of a secondary facet with a normal, in ξ, that lies in the region of a facet that
+    /// it faces.
+    pub(super) fn part_of(&self, facet: Facet, normal: Vector<2>, y: Places) -> Option<[f64; 2]> {
+        if normal.dot(&self.normal) > -FACING {
             return None;
         }
         let from = part_beyond(facet, y, self.start, 1.0)?;
@@ -122,8 +127,9 @@ pub(super) fn points(
     y: Places,
 ) -> Vec<Opposed> {
     let mut parts = Vec::new();
+    let normal = own.at(y, 0.0).normal;
     for (facet, region) in regions {
-        if let Some(ends) = region.part_of(own, y) {
+        if let Some(ends) = region.part_of(own, normal, y) {
             parts.push(Part { ends, facet: *facet, region });
         }
     }

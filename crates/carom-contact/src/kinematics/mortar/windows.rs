@@ -128,18 +128,20 @@ impl Mortar {
     /// For every facet of the secondary side that comes near the primary on its way, the facets
     /// that it faces at either end.
     fn faced(&self, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
-        let swept = |side: &Surface, facet: usize| {
-            let hull = Hull::line(side.shape().nodes(), 1.0);
+        let hulls = [&self.secondary, &self.primary].map(|side| Hull::line(side.shape().nodes(), 1.0));
+        let swept = |side: &Surface, hull: &Hull, facet: usize| {
             let nodes = side.facet(facet).nodes;
             let [old, new] = ends.map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
             let bounds = old.union(&new);
             bounds.grown(margin * bounds.size())
         };
         let mut faced = vec![None; self.secondary.facets()];
-        let boxes: Vec<Bounds> = self.order.iter().map(|&facet| swept(&self.primary, facet)).collect();
+        let boxes: Vec<Bounds> =
+            self.order.iter().map(|&facet| swept(&self.primary, &hulls[1], facet)).collect();
         let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
         let own = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
-        let own: Vec<(usize, Bounds)> = own.map(|facet| (facet, swept(&self.secondary, facet))).collect();
+        let own: Vec<(usize, Bounds)> =
+            own.map(|facet| (facet, swept(&self.secondary, &hulls[0], facet))).collect();
         if own.iter().all(|(_, bounds)| !bounds.meets(&all)) {
             return faced;
         }
@@ -147,9 +149,10 @@ impl Mortar {
         let regions = ends.map(of);
         for (facet, bounds) in own {
             let own = self.secondary.facet(facet);
+            let normals = ends.map(|y| own.at(y, 0.0).normal);
             let mut window: Option<Window> = None;
             for place in 0..self.order.len() {
-                let is_faced = |k: usize| regions[k][place].part_of(own, ends[k]).is_some();
+                let is_faced = |k: usize| regions[k][place].part_of(own, normals[k], ends[k]).is_some();
                 if is_faced(0) || is_faced(1) {
                     window.get_or_insert(Window { first: place, last: place }).last = place;
                 }
