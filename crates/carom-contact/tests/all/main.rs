@@ -7,6 +7,7 @@ mod discrete_gradient;
 mod edges;
 mod joints;
 mod kinks;
+mod mortar;
 mod near_obstacle;
 mod obstacles;
 mod obstacles_in_space;

@@ -162,7 +162,10 @@ pub(super) fn points(
 fn opposed(own: Facet, primary: &Surface, part: &Part, [xi, weight]: [f64; 2], y: Places) -> Option<Opposed> {
     let point = own.at(y, xi).position;
     let start = part.region.between(point);
-    let eta = primary.facet(part.facet).closest_from(y, point, start, BEYOND)?;
+    let opposite = primary.facet(part.facet);
+    // Far away, Newton's method may never be still.
+    let eta = opposite.closest_from(y, point, start, BEYOND);
+    let eta = eta.or_else(|| opposite.closest_point(y, point, BEYOND))?;
     Some(Opposed { xi, weight, facet: part.facet, eta })
 }
 
