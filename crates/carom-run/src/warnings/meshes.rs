@@ -2,7 +2,7 @@
 //! start.
 
 use carom_algebra::Vector;
-use carom_case::{Case, ContactSpec, PrimarySpec, Quantity};
+use carom_case::{Case, ContactSpec, Method, PrimarySpec, Quantity};
 use carom_mechanics::model::Model;
 
 use super::found::{Found, short};

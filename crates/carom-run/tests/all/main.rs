@@ -27,6 +27,7 @@ mod materials;
 mod meeting;
 mod memory;
 mod momentum;
+mod mortar;
 mod nonsmooth;
 mod obstacles;
 mod overlap;

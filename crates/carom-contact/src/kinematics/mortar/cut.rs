@@ -21,10 +21,6 @@ use crate::places::Places;
 /// Parts of a facet, in ξ, that are not worth integrating over.
 const ROUND_OFF: f64 = 1e-14;
 
-/// Cosine of the angle from the opposite direction up to which a facet faces another one: 60°.
-/// Where they meet at a larger angle, one of them ends in a corner, which has a row of its own.
-const FACING: f64 = 0.5;
-
 /// What belongs to a facet of the primary.
 #[derive(Debug)]
 pub(super) struct Region {
@@ -60,7 +56,7 @@ impl Region {
     /// The part of a secondary facet with a normal, in ξ, that lies in the region of a facet that
     /// it faces.
     pub(super) fn part_of(&self, facet: Facet, normal: Vector<2>, y: Places) -> Option<[f64; 2]> {
-        if normal.dot(&self.normal) > -FACING {
+        if normal.dot(&self.normal) >= 0.0 {
             return None;
         }
         let from = part_beyond(facet, y, self.start, 1.0)?;
@@ -110,6 +106,15 @@ pub(super) struct Opposed {
     pub(super) eta: f64,
 }
 
+/// What of a secondary facet faces the primary.
+#[derive(Debug, Default)]
+pub(super) struct Facing {
+    /// Points of quadrature in the order of ξ.
+    pub(super) points: Vec<Opposed>,
+    /// First and last ξ.
+    pub(super) ends: Option<[f64; 2]>,
+}
+
 /// The part of a secondary facet that lies opposite to a facet of the primary.
 struct Part<'a> {
     ends: [f64; 2],
@@ -117,15 +122,15 @@ struct Part<'a> {
     region: &'a Region,
 }
 
-/// The points of quadrature of a secondary facet at positions `y`, against the facets of the
-/// primary with their regions; `rule`: points and weights on −1 … 1.
-pub(super) fn points(
+/// What of a secondary facet faces the facets of the primary with these regions at positions `y`;
+/// `rule`: points and weights of quadrature on −1 … 1.
+pub(super) fn facing(
     own: Facet,
     primary: &Surface,
     regions: &[(usize, Region)],
     rule: &[[f64; 2]],
     y: Places,
-) -> Vec<Opposed> {
+) -> Facing {
     let mut parts = Vec::new();
     let normal = own.at(y, 0.0).normal;
     for (facet, region) in regions {
@@ -136,7 +141,7 @@ pub(super) fn points(
     let mut ends: Vec<f64> = parts.iter().flat_map(|part| part.ends).collect();
     ends.sort_unstable_by(f64::total_cmp);
     let own_length = (y.at(own.nodes[1]) - y.at(own.nodes[0])).norm();
-    let mut found = Vec::new();
+    let mut found = Facing::default();
     for piece in ends.windows(2).filter(|piece| piece[1] - piece[0] > ROUND_OFF) {
         let middle = 0.5 * (piece[0] + piece[1]);
         let half = 0.5 * (piece[1] - piece[0]);
@@ -152,8 +157,9 @@ pub(super) fn points(
             over.by_ref().filter_map(|part| Some((gap(&part)?, part))).min_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, part)) = nearest else { continue };
         for [at, weight] in rule {
-            found.extend(opposed(own, primary, part, [middle + half * at, half * weight], y));
+            found.points.extend(opposed(own, primary, part, [middle + half * at, half * weight], y));
         }
+        found.ends = Some([found.ends.map_or(piece[0], |ends| ends[0]), piece[1]]);
     }
     found
 }

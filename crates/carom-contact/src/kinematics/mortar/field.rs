@@ -5,7 +5,8 @@
 //! ```
 //!
 //! per area of the reference surface, of a body of thickness t; per area of the deformed surface it
-//! is p |Y'| / |y'|.
+//! is p |Y'| / |y'|. A node that faces nothing, beside the end of the primary, has the pressure at
+//! the last point of its facet that does: p means nothing beyond.
 
 use std::collections::BTreeMap;
 
@@ -30,15 +31,16 @@ impl Mortar {
         }
         let mut facets: Vec<usize> = coefficients.keys().map(|(facet, _)| *facet).collect();
         facets.dedup();
-        let carriers: Vec<[usize; MOST]> =
-            self.at(y, |of_facets| of_facets.iter().map(|of| of.carriers).collect());
+        let faced: Vec<(Option<[f64; 2]>, [usize; MOST])> =
+            self.at(y, |of_facets| of_facets.iter().map(|of| (of.ends, of.carriers)).collect());
         let mut at_nodes: BTreeMap<usize, Vec<NodalPressure>> = BTreeMap::new();
         for facet in facets {
             let own = self.secondary.facet(facet);
+            let (Some([from, to]), carriers) = faced[facet] else { continue };
             for (place, &node) in own.nodes.iter().enumerate() {
-                let xi = coordinate(own.nodes.len(), place);
+                let xi = coordinate(own.nodes.len(), place).clamp(from, to);
                 let of = |number: usize| {
-                    let carrier = carriers[facet][number];
+                    let carrier = carriers[number];
                     coefficients.get(&(facet, carrier)).copied().unwrap_or(0.0)
                 };
                 let parts = (0..=self.degree).map(|number| of(number) * bernstein(self.degree, number, xi));

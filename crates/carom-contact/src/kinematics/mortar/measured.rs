@@ -8,9 +8,10 @@
 use std::sync::PoisonError;
 
 use super::Mortar;
-use super::cut::{self, Opposed, Region};
+use super::cut::{self, Facing, Opposed, Region};
 use super::multipliers::{MOST, Part, bernstein};
 use crate::kinematics::gap::Gap;
+use crate::kinematics::projection::Facet;
 use crate::places::Places;
 
 /// A point of quadrature with the gap there.
@@ -26,6 +27,8 @@ pub(super) struct Measured {
 #[derive(Debug, Default)]
 pub(super) struct Faced {
     pub(super) points: Vec<Measured>,
+    /// First and last ξ that faces the primary.
+    pub(super) ends: Option<[f64; 2]>,
     /// For each polynomial the one whose multiplier carries it.
     pub(super) carriers: [usize; MOST],
 }
@@ -36,6 +39,19 @@ pub(super) struct Cache {
     /// Positions of the nodes of both sides.
     places: Vec<f64>,
     of_facets: Vec<Faced>,
+}
+
+/// Cosines of the angles from the opposite direction up to which a point faces the primary, and
+/// beyond which it does not: 60° and 75°. Where surfaces meet at a larger angle, one of them ends in
+/// a corner, which has a row of its own.
+const FACES: [f64; 2] = [0.5, 0.258_819_045_102_520_74];
+
+/// Weight of a point at which the normals of both sides have this cosine to opposite directions:
+/// from 0 to 1 without a jump, as a point turns to the primary.
+fn facing(cosine: f64) -> f64 {
+    let [fully, hardly] = FACES;
+    let x = ((cosine - hardly) / (fully - hardly)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
 }
 
 /// Share of the area of a multiplier that must face the primary for a pressure of its own.
@@ -57,33 +73,41 @@ impl Mortar {
     fn measure_facets(&self, y: Places) -> Vec<Faced> {
         let region = |&facet: &usize| (facet, Region::of(&self.primary, facet, y));
         let regions: Vec<(usize, Region)> = self.order.iter().map(region).collect();
-        let of_facet = |facet: usize| {
+        let mut faced: Vec<Faced> = Vec::new();
+        for facet in 0..self.secondary.facets() {
+            if !self.used[facet] {
+                faced.push(Faced::default());
+                continue;
+            }
             let own = self.secondary.facet(facet);
-            let points = cut::points(own, &self.primary, &regions, &self.rule, y);
-            let measured = |at: Opposed| {
-                let place = own.at(y, at.xi).position;
-                let gap = Gap::closest(self.primary.facet(at.facet), y, place, at.eta);
-                let area = at.weight * own.at(self.reference(), at.xi).measure;
-                Measured { at, gap, area }
-            };
-            points.into_iter().map(measured).collect()
-        };
-        let points = |facet: usize| if self.used[facet] { of_facet(facet) } else { Vec::new() };
-        let points: Vec<Vec<Measured>> = (0..self.secondary.facets()).map(points).collect();
-        let carriers = self.carriers(&points);
-        points.into_iter().zip(carriers).map(|(points, carriers)| Faced { points, carriers }).collect()
+            let Facing { points, ends } = cut::facing(own, &self.primary, &regions, &self.rule, y);
+            let measured = points.into_iter().map(|at| self.measured(own, at, y));
+            let points = measured.filter(|point| point.area > 0.0).collect();
+            faced.push(Faced { points, ends, carriers: [0; MOST] });
+        }
+        let carriers = self.carriers(&faced);
+        faced.iter_mut().zip(carriers).for_each(|(faced, carriers)| faced.carriers = carriers);
+        faced
+    }
+
+    fn measured(&self, own: Facet, at: Opposed, y: Places) -> Measured {
+        let place = own.at(y, at.xi);
+        let gap = Gap::closest(self.primary.facet(at.facet), y, place.position, at.eta);
+        let faces = facing(-place.normal.dot(&gap.at.normal));
+        let area = faces * at.weight * own.at(self.reference(), at.xi).measure;
+        Measured { at, gap, area }
     }
 
     /// For each facet and polynomial the polynomial that carries it: itself, if enough of its
     /// multiplier is covered, or else the nearest one on the facet of which that holds, or the one
     /// that is covered most.
-    fn carriers(&self, points: &[Vec<Measured>]) -> Vec<[usize; MOST]> {
-        let mut carriers = vec![std::array::from_fn(|number| number); points.len()];
-        let mut covers = vec![[0.0; MOST]; points.len()];
+    fn carriers(&self, faced: &[Faced]) -> Vec<[usize; MOST]> {
+        let mut carriers = vec![std::array::from_fn(|number| number); faced.len()];
+        let mut covers = vec![[0.0; MOST]; faced.len()];
         for multiplier in &self.multipliers {
             let of_part = |part: &Part| -> f64 {
                 let value = |point: &Measured| bernstein(self.degree, part.polynomial, point.at.xi);
-                points[part.facet].iter().map(|point| value(point) * point.area).sum()
+                faced[part.facet].points.iter().map(|point| value(point) * point.area).sum()
             };
             let cover = multiplier.parts.iter().map(of_part).sum::<f64>() / multiplier.area;
             multiplier.parts.iter().for_each(|part| covers[part.facet][part.polynomial] = cover);

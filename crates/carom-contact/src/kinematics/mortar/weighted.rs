@@ -144,7 +144,7 @@ impl Mortar {
             let mut samples = Vec::new();
             for &Part { facet, polynomial } in &multiplier.parts {
                 let shape = self.secondary.facet(facet).shape;
-                let Faced { points, carriers } = &of_facets[facet];
+                let Faced { points, carriers, .. } = &of_facets[facet];
                 let carried: Vec<usize> =
                     (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
                 for Measured { at, gap, area } in points.iter().filter(|_| !carried.is_empty()) {
@@ -177,7 +177,7 @@ impl Mortar {
         let mut nearest: Option<f64> = None;
         for part in &self.multipliers[pair.node].parts {
             let own = self.secondary.facet(part.facet);
-            for at in cut::points(own, &self.primary, &regions, &ENDS, y) {
+            for at in cut::facing(own, &self.primary, &regions, &ENDS, y).points {
                 let gap = self.primary.gap(at.facet, at.eta, own.at(y, at.xi).position, y);
                 nearest = Some(nearest.map_or(gap, |least| least.min(gap)));
             }
