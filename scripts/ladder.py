@@ -39,6 +39,7 @@ import shutil
 import subprocess
 import sys
 import time
+import tomllib
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -55,6 +56,9 @@ COLUMNS = (
     "case category family enforcement elements outcome kind nodes edges self initial created created_recorded momentum "
     "contacts wall warnings wrong message"
 ).split()
+
+# Schemes with impulses on single nodes.
+WITHOUT_MORTAR = ("central-difference", "paoli-schatzman", "moreau-jean", "nonsmooth-generalized-alpha")
 
 # Kind of a stop, by words of its reason.
 KINDS = {
@@ -236,6 +240,20 @@ def show(run):
     return 1 if found["wrong"] else 0
 
 
+def with_mortar(text):
+    """A case with mortar contact between sides of two bodies in the plane, if the scheme has it."""
+    case = tomllib.loads(text)
+    if case["dimension"] != 2 or case["time"]["scheme"]["kind"] in WITHOUT_MORTAR:
+        return text
+    parts = re.split(r"(?m)^(?=\[\[contact\]\])", text)
+    for i, part in enumerate(parts[1:], 1):
+        contact = tomllib.loads(part)["contact"][0]
+        of_two = isinstance(contact.get("primary"), str) and contact["primary"] != contact["secondary"]
+        if of_two and contact.get("law") != "predictor":
+            parts[i] = part.replace("[[contact]]\n", '[[contact]]\nmethod = "mortar"\n', 1)
+    return "".join(parts)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", type=Path, help="the program")
@@ -252,6 +270,7 @@ def main():
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a key of every case that is changed")
     parser.add_argument("--space", action="store_true", help="cases in space")
     parser.add_argument("--aligned", action="store_true", help="aligned cases")
+    parser.add_argument("--mortar", action="store_true", help="mortar contact wherever it is available")
     parser.add_argument("--demand", type=float, metavar="SHARE", help="exit code 1 if a case is wrong or fewer than this share are right")
     parser.add_argument("--dry", action="store_true", help="write the cases only")
     options = parser.parse_args()
@@ -275,18 +294,19 @@ def main():
     kinds = [word for word in words if not word.isdigit()]
     wanted = lambda k, meta: not words or k in numbers or any(kind in meta["category"] + " " + meta["family"] for kind in kinds)
     folder = options.out / "cases"
+    written = with_mortar if options.mortar else lambda text: text
     for setup in aligned_cases.chosen(options.count) if options.aligned else []:
         if wanted(setup.number, setup.meta()):
             path = folder / f"{setup.number:04}.toml"
-            path.write_text(setup.text())
+            path.write_text(written(setup.text()))
             if setup.twin:
-                path.with_name(f"{path.stem}-twin.toml").write_text(setup.twin.text())
+                path.with_name(f"{path.stem}-twin.toml").write_text(written(setup.twin.text()))
             work.append((setup, path))
     for k in range(1, (options.count or 400) + 1) if not options.cases and not options.aligned else []:
         meta, text = generator.case(options.seed, k)
         if wanted(k, meta):
             path = folder / f"{k:04}.toml"
-            path.write_text(text)
+            path.write_text(written(text))
             work.append((meta, path))
     if options.dry:
         return 0

@@ -1,7 +1,7 @@
 //! Initial overlap of the bodies of a contact: kept, or closed before the start.
 //!
-//! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run, and
-//! `overlap = "touch"` also subtracts its initial distance.
+//! `overlap = "keep-gap"` adds its initial depth to the gap of each node, to the end of the run,
+//! and `overlap = "touch"` also subtracts its initial distance.
 //!
 //! `overlap = "relax"` finds the equilibrium in which the gaps are closed: an interference fit. The
 //! depths that the nodes keep are reduced in stages to zero, or to the deviation of straight cells

@@ -114,8 +114,9 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
-    /// Reports what mortar contact does not have: other dimensions than the plane, contact of a side
-    /// with itself, rigid obstacles, schemes and laws with impulses, and the detection of the paper.
+    /// Reports what mortar contact does not have: other dimensions than the plane, contact of a
+    /// side with itself, rigid obstacles, schemes and laws with impulses, and the detection of the
+    /// paper.
     fn mortar(&mut self, contact: &ContactSpec) {
         if contact.method != Method::Mortar {
             return;

@@ -2,7 +2,7 @@
 //! multipliers enforce contact at the positions of bodies with mass.
 
 use super::super::{
-    BodySpec, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback, SchemeSpec,
+    BodySpec, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback, Method, SchemeSpec,
 };
 use super::Check;
 
@@ -79,6 +79,12 @@ fn of_contact(contact: &ContactSpec) -> impl Iterator<Item = (&'static str, &'st
             "law = \"predictor\"",
             "the step has no predictor to project",
             "use law = \"position\", or leave out `fallback`",
+        ),
+        (
+            contact.method == Method::Mortar,
+            "method = \"mortar\"",
+            "the step finds impulses on single nodes",
+            "use method = \"node-to-segment\", or leave out `fallback`",
         ),
         (
             is_of_the_paper,

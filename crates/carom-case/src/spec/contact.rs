@@ -132,6 +132,7 @@ pub enum Method {
 }
 
 impl Method {
+    #[allow(clippy::trivially_copy_pass_by_ref)] // Serde passes a reference.
     fn is_of_nodes(&self) -> bool {
         *self == Self::NodeToSegment
     }

@@ -248,7 +248,7 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
     // later versions
     (&["plane=axisymmetric"], &["`plane = \"axisymmetric\"` is not supported yet"]),
-    (&["contact.strike.method=mortar"], &["`method = \"mortar\"` is not supported yet"]),
+    (&["contact.strike.passes=2"], &["`passes`"]),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     // shapes

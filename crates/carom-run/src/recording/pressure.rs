@@ -88,7 +88,7 @@ impl Surfaces {
     /// The pressures of a state by node; nodes that are not listed have none. Where a contact has a
     /// pressure field, that of its secondary side is taken from it.
     pub(super) fn pressures(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
-        let mut pressures = self.from_forces(model, state);
+        let mut pressures = self.of_forces(model, state);
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
             for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
                 pressures.insert(of.node, of.actual);
@@ -98,7 +98,7 @@ impl Surfaces {
     }
 
     /// The pressures that follow from the forces on nodes.
-    fn from_forces(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
+    fn of_forces(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
         let loads = self.loads(&forces(model, state));
         let reached: BTreeSet<usize> = loads.keys().flat_map(|node| &self.around[node]).copied().collect();
         let areas: BTreeMap<usize, Area> =

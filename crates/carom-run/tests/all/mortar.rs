@@ -165,8 +165,8 @@ fn error(element: &str, n: usize, sides: [&str; 2]) -> f64 {
     found.iter().map(|pressure| (pressure / exact - 1.0).abs()).fold(0.0, f64::max)
 }
 
-/// Orders of the largest error of the pressure, of at least 0.85, 2 and 2.5 with cells of degree 1, 2
-/// and 3, whichever side is secondary.
+/// Orders of the largest error of the pressure, of at least 0.85, 2 and 2.5 with cells of degree 1,
+/// 2 and 3, whichever side is secondary.
 #[test]
 fn the_pressure_between_rings_converges() {
     for sides in [["in.outer", "out.inner"], ["out.inner", "in.outer"]] {

@@ -10,8 +10,8 @@
 
 use std::collections::BTreeMap;
 
-use super::Mortar;
 use super::multipliers::{MOST, bernstein};
+use super::sides::Mortar;
 use crate::kinematics::NodalPressure;
 use crate::pair::Pair;
 use crate::places::Places;

@@ -1,49 +1,23 @@
-//! The points of quadrature of all secondary facets at the positions of the last call. Several pairs
-//! share a facet, and a state is measured more than once. A cache: it never changes a result.
+//! The points of quadrature of all secondary facets at the positions of the last call. Several
+//! pairs share a facet, and a state is measured more than once. A cache: it never changes a result.
 //!
 //! A multiplier of whose area hardly anything faces the primary, as beside the end of a body, would
-//! carry an arbitrary pressure. Its polynomials are added to those of a neighbour on the same facet,
-//! whose pressure then extends over them.
+//! carry an arbitrary pressure. Its polynomials are added to those of a neighbour on the same
+//! facet, whose pressure then extends over them.
 
 use std::sync::PoisonError;
 
-use super::Mortar;
+use super::cache::{Faced, Measured};
 use super::cut::{self, Facing, Opposed, Region};
 use super::multipliers::{MOST, Part, bernstein};
+use super::sides::Mortar;
 use crate::kinematics::gap::Gap;
 use crate::kinematics::projection::Facet;
 use crate::places::Places;
 
-/// A point of quadrature with the gap there.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Measured {
-    pub(super) at: Opposed,
-    pub(super) gap: Gap,
-    /// Weight of quadrature, over the reference surface.
-    pub(super) area: f64,
-}
-
-/// A secondary facet at one configuration.
-#[derive(Debug, Default)]
-pub(super) struct Faced {
-    pub(super) points: Vec<Measured>,
-    /// First and last ξ that faces the primary.
-    pub(super) ends: Option<[f64; 2]>,
-    /// For each polynomial the one whose multiplier carries it.
-    pub(super) carriers: [usize; MOST],
-}
-
-/// The facets at one configuration.
-#[derive(Debug, Default)]
-pub(super) struct Cache {
-    /// Positions of the nodes of both sides.
-    places: Vec<f64>,
-    of_facets: Vec<Faced>,
-}
-
 /// Cosines of the angles from the opposite direction up to which a point faces the primary, and
-/// beyond which it does not: 60° and 75°. Where surfaces meet at a larger angle, one of them ends in
-/// a corner, which has a row of its own.
+/// beyond which it does not: 60° and 75°. Where surfaces meet at a larger angle, one of them ends
+/// in a corner, which has a row of its own.
 const FACES: [f64; 2] = [0.5, 0.258_819_045_102_520_74];
 
 /// Weight of a point at which the normals of both sides have this cosine to opposite directions:

@@ -6,101 +6,26 @@
 //! window only says over which nodes its row extends; the points of quadrature follow from
 //! positions alone.
 
+mod cache;
 mod cut;
 mod field;
 mod measured;
 mod multipliers;
+mod sides;
 mod weighted;
 mod windows;
 
-use std::sync::Mutex;
-
 use carom_algebra::Vector;
-use carom_solid::quadrature;
 
-use self::measured::Cache;
-use self::multipliers::{Multiplier, degree_of_pressure, multipliers};
+pub use self::sides::Mortar;
 use self::weighted::Sample;
-use super::facets::Facets;
 use super::passed::Passed;
-use super::surface::Surface;
-use super::{BothSides, Kinematics, NodalPressure, NodeToFacet};
+use super::{Kinematics, NodalPressure};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// Contact of two sides of bodies in the plane on average.
-#[derive(Debug)]
-pub struct Mortar {
-    secondary: Surface,
-    primary: Surface,
-    /// Facets of the primary side, each followed by the next one along the side if there is one.
-    order: Vec<usize>,
-    /// Place of each facet of the primary in that order.
-    place: Vec<usize>,
-    multipliers: Vec<Multiplier>,
-    /// Nodes that represent the multipliers.
-    nodes: Vec<usize>,
-    /// Degree of the pressure.
-    degree: usize,
-    /// Points and weights of quadrature on −1 … 1.
-    rule: Vec<[f64; 2]>,
-    reference: Vec<f64>,
-    /// Nodes of both sides.
-    surface: Vec<usize>,
-    /// Whether each secondary facet belongs to a multiplier.
-    used: Vec<bool>,
-    cache: Mutex<Cache>,
-    /// Initial depth that is kept for each multiplier; empty if all are zero.
-    kept: Vec<f64>,
-    /// Nodes of both sides against the other one: none may pass through it.
-    sides: BothSides<NodeToFacet>,
-    /// Initial depths that these nodes keep: their own, where the multipliers keep theirs.
-    sides_kept: Vec<(usize, f64)>,
-}
-
 impl Mortar {
-    /// Contact of a secondary with a primary side; `reference`: reference positions, flat over all
-    /// nodes; `sides`: contact of their nodes, which finds those that pass through a body.
-    pub fn new(
-        secondary: Surface,
-        primary: Surface,
-        reference: &[f64],
-        sides: BothSides<NodeToFacet>,
-    ) -> Self {
-        let multipliers = multipliers(&secondary, reference);
-        let order = windows::along(&primary);
-        let mut place = vec![0; primary.all()];
-        order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
-        let degree_of = |side: &Surface| side.shape().degree();
-        let exact = 2 * degree_of(&secondary).max(degree_of(&primary)) + 3;
-        let rule = quadrature::line(exact).iter().map(|(xi, weight)| [xi[0], weight]).collect();
-        let mut used = vec![false; secondary.facets()];
-        let parts = multipliers.iter().flat_map(|of| &of.parts);
-        parts.for_each(|part| used[part.facet] = true);
-        let facets = |side: &Surface| side.nodes[..side.facets() * side.shape.nodes()].to_vec();
-        let mut surface = [facets(&secondary), facets(&primary)].concat();
-        surface.sort_unstable();
-        surface.dedup();
-        Self {
-            surface,
-            used,
-            cache: Mutex::default(),
-            nodes: multipliers.iter().map(|of| of.node).collect(),
-            degree: degree_of_pressure(degree_of(&secondary)),
-            secondary,
-            primary,
-            order,
-            place,
-            multipliers,
-            rule,
-            reference: reference.to_vec(),
-            kept: Vec::new(),
-            sides,
-            sides_kept: Vec::new(),
-        }
-    }
-
     /// Weighted gap of a multiplier in the reference configuration, without what it keeps.
     fn gap_at_start(&self, multiplier: usize) -> Option<f64> {
         Some(self.signed_distance(multiplier, &self.reference)? - self.kept(multiplier))
@@ -111,10 +36,6 @@ impl Mortar {
         let depth = |place: usize| -self.sides.signed_distance(place, &self.reference).unwrap_or(0.0);
         let nodes = self.sides.secondary().iter().enumerate();
         nodes.map(move |(place, &node)| (node, depth(place).max(0.0)))
-    }
-
-    fn reference(&self) -> Places<'_> {
-        Places::new(&self.reference, 2)
     }
 
     /// Moves the recorded contact point of a pair to the closest point of the sample that weighs

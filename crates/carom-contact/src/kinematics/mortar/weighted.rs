@@ -5,17 +5,16 @@
 //! ```
 //!
 //! over the part of the secondary reference surface that has a partner; g is the gap of the point x
-//! (`gap.rs`), and its derivatives follow by the chain rule with the constant weights N_a. The force
-//! of a multiplier λ_j = −p_j A_j is λ_j ∇g_j: at every point of quadrature equal, opposite and
-//! collinear on both sides, so that forces and moments are balanced for any quadrature.
-//! (M. Hiermeier, W. A. Wall and A. Popp, 2018, derive a mortar method from such a potential.)
+//! (`gap.rs`), and its derivatives follow by the chain rule with the constant weights N_a. The
+//! force of a multiplier λ_j = −p_j A_j is λ_j ∇g_j: at every point of quadrature equal, opposite
+//! and collinear on both sides, so that forces and moments are balanced for any quadrature.
 
 use carom_algebra::Vector;
 
-use super::Mortar;
+use super::cache::{Faced, Measured};
 use super::cut::{self, Region};
-use super::measured::{Faced, Measured};
 use super::multipliers::{Part, bernstein};
+use super::sides::Mortar;
 use crate::kinematics::gap::Gap;
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;

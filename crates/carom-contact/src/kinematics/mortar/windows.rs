@@ -3,31 +3,13 @@
 
 use carom_solid::{Bounds, Hull};
 
-use super::Mortar;
 use super::cut::Region;
+use super::sides::Mortar;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
 use crate::pair::{Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
-
-/// The facets of a side that are surfaces, from the starts of its chains on.
-pub(super) fn along(side: &Surface) -> Vec<usize> {
-    let mut order = Vec::new();
-    let mut seen = vec![false; side.facets()];
-    let is_start = |facet: &usize| side.neighbour_of_side(*facet, false).is_none();
-    // Loops, which have no start, come last.
-    let starts = (0..side.facets()).filter(is_start).chain(0..side.facets());
-    for start in starts.filter(|&facet| !side.is_mirror(facet)) {
-        let mut next = Some(start);
-        while let Some(facet) = next.filter(|&facet| !seen[facet]) {
-            seen[facet] = true;
-            order.push(facet);
-            next = side.neighbour_of_side(facet, true);
-        }
-    }
-    order
-}
 
 /// First and last place of facets in the order of the primary.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,7 +120,7 @@ impl Mortar {
         let mut faced = vec![None; self.secondary.facets()];
         let boxes: Vec<Bounds> =
             self.order.iter().map(|&facet| swept(&self.primary, &hulls[1], facet)).collect();
-        let all = boxes.iter().fold(Bounds::EMPTY, |all, bounds| all.union(bounds));
+        let all = boxes.iter().fold(Bounds::EMPTY, Bounds::union);
         let own = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
         let own: Vec<(usize, Bounds)> =
             own.map(|facet| (facet, swept(&self.secondary, &hulls[0], facet))).collect();

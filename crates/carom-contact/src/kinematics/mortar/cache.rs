@@ -1,0 +1,32 @@
+//! What is known of the secondary facets at one configuration.
+
+use super::cut::Opposed;
+use super::multipliers::MOST;
+use crate::kinematics::gap::Gap;
+
+/// A point of quadrature with the gap there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measured {
+    pub(super) at: Opposed,
+    pub(super) gap: Gap,
+    /// Weight of quadrature, over the reference surface.
+    pub(super) area: f64,
+}
+
+/// A secondary facet at one configuration.
+#[derive(Debug, Default)]
+pub(super) struct Faced {
+    pub(super) points: Vec<Measured>,
+    /// First and last ξ that faces the primary.
+    pub(super) ends: Option<[f64; 2]>,
+    /// For each polynomial the one whose multiplier carries it.
+    pub(super) carriers: [usize; MOST],
+}
+
+/// The facets at one configuration.
+#[derive(Debug, Default)]
+pub(super) struct Cache {
+    /// Positions of the nodes of both sides.
+    pub(super) places: Vec<f64>,
+    pub(super) of_facets: Vec<Faced>,
+}
