@@ -57,6 +57,6 @@ pub use spec::{
     ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
     MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overhang, Overlap, OverlaySpec,
     Persistency, Plane, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec, SupportSpec,
-    TangentRule, TieSpec, TimeSpec, Units, Velocities, Volumetric, load_variables,
+    TangentRule, TieMethod, TieSpec, TimeSpec, Units, Velocities, Volumetric, load_variables,
 };
 pub use surface_file::SurfaceSpec;

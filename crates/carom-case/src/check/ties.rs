@@ -1,7 +1,7 @@
 //! Checks of ties: two different sides that no contact joins, bodies that both have mass or both
 //! none, and a name of their own.
 
-use super::super::{PrimarySpec, TieSpec};
+use super::super::{Overhang, PrimarySpec, TieMethod, TieSpec};
 use super::Check;
 
 impl Check<'_> {
@@ -12,6 +12,7 @@ impl Check<'_> {
             let path = |key: &str| format!("tie[{k}].{key}");
             let secondary = self.side(&tie.secondary, path("secondary"));
             let primary = self.side(&tie.primary, path("primary"));
+            self.mortar_tie(k, tie);
             self.different_sides(k, tie);
             self.not_in_contact(k, tie);
             if let (Some(a), Some(b)) = (secondary, primary)
@@ -35,6 +36,23 @@ impl Check<'_> {
                 let why = "the columns of their forces have their names";
                 self.add(path("name"), what, why, "rename one of them");
             }
+        }
+    }
+
+    /// Reports a mortar tie where it is not available.
+    fn mortar_tie(&mut self, k: usize, tie: &TieSpec) {
+        if tie.method != TieMethod::Mortar {
+            return;
+        }
+        let path = format!("tie[{k}].method");
+        if let Some(dimension @ (1 | 3)) = self.draft.dimension {
+            let what = format!("method = \"mortar\" cannot be used in dimension {dimension}");
+            let why = "its weights are integrals over curves in the plane";
+            self.add(path, what, why, "leave `method` out");
+        } else if tie.overhang == Overhang::Free {
+            let what = "method = \"mortar\" cannot be used with overhang = \"free\"";
+            let why = "a mean over a part of the surface that has no partner is not known";
+            self.add(path, what, why, "exchange `secondary` and `primary`, or leave `method` out");
         }
     }
 

@@ -27,6 +27,6 @@ pub use mesh::{MeshSpec, RefineSpec, SKIN};
 pub(crate) use mesh_size::PLANES;
 pub use obstacle::{ObstacleMotion, PrimarySpec};
 pub use output::{OutputSpec, OverlaySpec, ProbeSpec, Quantity};
-pub use tie::{Overhang, TieSpec};
+pub use tie::{Overhang, TieMethod, TieSpec};
 pub(crate) use time::scheme;
 pub use time::{Fallback, LinearRule, NewtonSpec, SchemeSpec, TangentRule, TimeSpec};

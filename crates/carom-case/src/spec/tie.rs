@@ -20,6 +20,10 @@ pub struct TieSpec {
     /// Primary side, whose points the tied nodes are.
     #[key(Side, example = "\"rim.outer\"")]
     pub primary: String,
+    /// Discretisation of the tie. `mortar`: dimension 2.
+    #[key(default = "\"points\"")]
+    #[serde(default, skip_serializing_if = "TieMethod::is_of_points")]
+    pub method: TieMethod,
     /// Largest distance of a secondary node from the primary side that is closed, without stress:
     /// the node is moved in the mesh. Default: a millionth of the length of the nearest facet, in
     /// dimension 1 of the shortest cell.
@@ -30,6 +34,25 @@ pub struct TieSpec {
     #[key(default = "\"refuse\"")]
     #[serde(default)]
     pub overhang: Overhang,
+}
+
+/// Discretisation of a tie.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Keys)]
+#[serde(rename_all = "kebab-case")]
+pub enum TieMethod {
+    /// A secondary node is a point of the primary side.
+    #[default]
+    Points,
+    /// A secondary node is a mean of points, such that uniform stress passes between meshes that do
+    /// not match.
+    Mortar,
+}
+
+impl TieMethod {
+    #[allow(clippy::trivially_copy_pass_by_ref)] // Serde passes a reference.
+    fn is_of_points(&self) -> bool {
+        *self == Self::Points
+    }
 }
 
 /// Secondary nodes of a tie beside the primary side.

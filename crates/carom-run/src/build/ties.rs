@@ -1,22 +1,24 @@
 //! Ties: the secondary nodes as points of the primary facets on which they lie.
 //!
+//! With mortar ties (`mortar_tie.rs`) each is a mean of points.
+//!
 //! A node beside the surface, by less than what the tie adjusts, is moved onto it in the mesh,
 //! without stress: the force of a tie at a distance from its point would have a moment.
 
-use carom_case::{Case, Overhang, Problem, TieSpec};
+use carom_case::{Case, Overhang, Problem, TieMethod, TieSpec};
 use carom_mechanics::model::{Circular, Points, Tie};
-use carom_solid::{Bounds, FacetPoint, FacetShape, Mesh, Tree};
+use carom_solid::{FacetPoint, Mesh};
 
+use super::mortar_tie;
 use super::side::coordinates;
 use super::tie_links::Links;
+use super::tie_side::{TieSide, place_of};
 
 /// Distance that is closed unless the tie says more, over the length of a facet.
 const OFFSET: f64 = 1e-6;
 /// Distance along the nearest facet, as a share of the distance from it, from which on a node is
 /// beside the primary side and not above it.
 const BESIDE: f64 = 0.1;
-/// Part of a facet's size by which a curved one may leave the box of its nodes.
-const BULGE: f64 = 0.5;
 /// Weight of a node that is round-off of a point's place.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -39,61 +41,6 @@ struct Found {
     bodies: [usize; 2],
     tied: Vec<Tied>,
     sides: [Vec<usize>; 2],
-}
-
-/// The primary side of a tie.
-struct Primary {
-    shape: FacetShape,
-    facets: Vec<Vec<usize>>,
-    places: Vec<Vec<[f64; 3]>>,
-    /// Length of the shortest cell where facets are points.
-    shortest: f64,
-    tree: Tree,
-}
-
-impl Primary {
-    fn new(mesh: &Mesh, side: &str) -> Option<Self> {
-        let facets: Vec<Vec<usize>> = mesh.sides.get(side)?.iter().map(|facet| facet.nodes.clone()).collect();
-        let places: Vec<Vec<[f64; 3]>> =
-            facets.iter().map(|nodes| nodes.iter().map(|&node| place_of(mesh, node)).collect()).collect();
-        let bounds = |facet: usize| {
-            let mut bounds = Bounds::EMPTY;
-            places[facet].iter().for_each(|place| bounds.add(place));
-            let size = bounds.size();
-            bounds.grown(BULGE * size)
-        };
-        let tree = Tree::new(facets.len(), bounds);
-        let size = |cell: usize| {
-            let mut bounds = Bounds::EMPTY;
-            mesh.cell(cell).iter().for_each(|&node| bounds.add(&place_of(mesh, node)));
-            bounds.size()
-        };
-        let cells = if mesh.dimension() == 1 { mesh.cell_count() } else { 0 };
-        let shortest = (0..cells).map(size).fold(f64::INFINITY, f64::min);
-        Some(Self { shape: mesh.element.facet_shape(), facets, places, shortest, tree })
-    }
-
-    /// The nearest facet and its nearest point.
-    fn nearest(&self, place: [f64; 3]) -> Option<(usize, FacetPoint)> {
-        let distance = |facet: usize| Some(self.shape.closest(&self.places[facet], place).distance);
-        let (facet, _) = self.tree.nearest(&place, None, distance)?;
-        Some((facet, self.shape.closest(&self.places[facet], place)))
-    }
-
-    /// Largest extent of a facet, of a cell if facets are points.
-    fn length(&self, facet: usize) -> f64 {
-        if self.shortest.is_finite() {
-            return self.shortest;
-        }
-        let mut bounds = Bounds::EMPTY;
-        self.places[facet].iter().for_each(|place| bounds.add(place));
-        bounds.size()
-    }
-}
-
-fn place_of(mesh: &Mesh, node: usize) -> [f64; 3] {
-    let place = &mesh.nodes[node];
-    std::array::from_fn(|i| place.get(i).copied().unwrap_or(0.0))
 }
 
 /// Finds the points of all ties, and moves the nodes of the meshes onto them.
@@ -170,7 +117,7 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
     };
     let nodes = meshes[secondary].side_nodes(own);
     let nodes = nodes.ok_or_else(|| missing("secondary", &tie.secondary, &meshes[secondary]))?;
-    let target = Primary::new(&meshes[primary], other);
+    let target = TieSide::new(&meshes[primary], other);
     let target = target.ok_or_else(|| missing("primary", &tie.primary, &meshes[primary]))?;
     let carriers = meshes[primary].side_nodes(other).unwrap_or_default();
     let mut tied = Vec::new();
@@ -192,6 +139,13 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
             return Err(apart(case, k, tie, place, &point));
         }
         tied.push(Tied { node, weights: weights(&target.facets[facet], &point.values) });
+    }
+    if tie.method == TieMethod::Mortar
+        && let Some(side) = TieSide::new(&meshes[secondary], own)
+    {
+        let of_ends = tied.into_iter().map(|Tied { node, weights }| (node, weights)).collect();
+        let found = mortar_tie::weights(&side, &target, of_ends);
+        tied = found.into_iter().map(|(node, weights)| Tied { node, weights }).collect();
     }
     if tied.is_empty() {
         let what = format!("tie `{}` has no nodes", tie.name);
