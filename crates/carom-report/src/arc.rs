@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use carom_case::Method;
 use carom_record::ContactRow;
 
 use crate::recorded::Recorded;
@@ -23,6 +24,7 @@ pub(crate) struct Place {
 /// closed side is cut where no node is in contact for longest.
 pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTreeMap<u64, Place>, bool) {
     let contact = run.case.contacts.iter().find(|contact| contact.name == name);
+    let is_field = contact.is_some_and(|contact| contact.method == Method::Mortar);
     let chains = contact
         .map(|contact| &contact.secondary)
         .and_then(|side| run.manifest.sides.get(side))
@@ -56,9 +58,16 @@ pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTree
             end += if i == 0 { 0.0 } else { length(points[order[i - 1]].1, points[k].1) };
             places.push(end);
         }
-        for (i, &k) in order.iter().enumerate().filter(|(_, k)| rubbing.contains(&points[**k].0)) {
-            let below = i.checked_sub(1).map_or(places[i], |j| 0.5 * (places[i] + places[j]));
-            let above = places.get(i + 1).map_or(places[i], |next| 0.5 * (places[i] + next));
+        let rubs: Vec<bool> = order.iter().map(|&k| rubbing.contains(&points[k].0)).collect();
+        for (i, &k) in order.iter().enumerate().filter(|(i, _)| rubs[*i]) {
+            // Of a pressure field, only the nodes that stand for its coefficients have rows.
+            let previous = (0..i).rev().find(|&j| is_field && rubs[j]).or(i.checked_sub(1));
+            let next = (i + 1..places.len()).find(|&j| is_field && rubs[j]).or(Some(i + 1));
+            let half_way = |other: Option<usize>| {
+                let other = other.and_then(|j| places.get(j)).unwrap_or(&places[i]);
+                0.5 * (places[i] + other)
+            };
+            let [below, above] = [previous, next].map(half_way);
             let place = Place { number: before + i, at: places[i], part: [below, above], is_secondary: true };
             found.entry(points[k].0).or_insert(place);
         }
