@@ -248,7 +248,22 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["expect=[{ what = \"last error_l2\", at_most = 0 }]"], &["no column `error_l2`"]),
     // later versions
     (&["plane=axisymmetric"], &["`plane = \"axisymmetric\"` is not supported yet"]),
-    (&["contact.strike.passes=2"], &["`passes`"]),
+    (&["contact.strike.passes=2"], &["`passes` is not supported yet"]),
+    (
+        &["contact.strike.method=mortar", "time.scheme={ kind = \"moreau-jean\", theta = 0.5 }"],
+        &["method = \"mortar\" cannot be used with scheme `moreau-jean`"],
+    ),
+    (
+        &[
+            "contact.strike.method=mortar",
+            "contact.strike.primary={ plane = { point = [0, 0], normal = [0, 1] } }",
+        ],
+        &["method = \"mortar\" cannot be used with a rigid obstacle", "node-to-segment"],
+    ),
+    (
+        &["contact.strike.method=mortar", "time.fallback=velocity"],
+        &["fallback = \"velocity\" cannot be used with method = \"mortar\""],
+    ),
     (&["time.step={ initial = 1e-3 }"], &["`step` must be a number > 0, not a table", "A later version"]),
     (&["body.prism.mesh={ file = \"a.msh\", surface = \"prism\" }"], &["the mesh \"a.msh\" cannot be read"]),
     // shapes
