@@ -35,8 +35,9 @@ fn apart(a: &Simulation, b: &Simulation) -> [f64; 2] {
 /// tolerances of both. A step that one of them bisected has the answer of shorter steps.
 #[test]
 fn every_step_is_that_of_multipliers() {
-    for scheme in SCHEMES {
-        for mu in ["0.0", "0.2"] {
+    for (k, scheme) in SCHEMES.into_iter().enumerate() {
+        // The search for friction contains that for pressures.
+        for mu in if k % 2 == 0 { &["0.0", "0.2"][..] } else { &["0.2"] } {
             let run = |enforcement: &str| simulation(DISCS, &discs(scheme, enforcement, mu));
             let (mut exact, mut augmented) = (run("multiplier"), run("augmented"));
             let mut closed = 0;
@@ -67,7 +68,7 @@ fn every_step_is_that_of_multipliers() {
                 closed += usize::from(b.pairs[0].iter().any(|pair| pair.active));
                 rubbed = b.ledger.friction_work;
             }
-            assert!(closed > 10 && (rubbed < 0.0) == (mu != "0.0"), "{scheme} {mu}: {closed} {rubbed}");
+            assert!(closed > 10 && (rubbed < 0.0) == (*mu != "0.0"), "{scheme} {mu}: {closed} {rubbed}");
             assert!(bisected <= 1, "{scheme} {mu}: {bisected}");
         }
     }
