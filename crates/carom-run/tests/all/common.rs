@@ -114,8 +114,8 @@ pub(crate) fn continues_with_the_same_bits(case: &Case, mut whole: Simulation, s
     assert_eq!(whole.state(), resumed.state());
 }
 
-/// Stops a run in the first state for which a condition holds, and continues it for a while from its
-/// checkpoint.
+/// Stops a run in the first state for which a condition holds, and continues it for a while from
+/// its checkpoint.
 pub(crate) fn resumes_with_the_same_bits(text: &str, sets: &[String], there: impl Fn(&State) -> bool) {
     const STEPS: usize = 80;
     let mut whole = simulation(text, sets);

@@ -327,7 +327,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Cases that `carom verify --fast` omits, but that are short enough to be judged for longer by night.
+/// Cases that `carom verify --fast` omits, but that are short enough to be judged for longer by
+/// night.
 const SECONDS_LONG: [&str; 10] = [
     "disc/row.toml",
     "friction/bar-on-bed.toml",
