@@ -248,16 +248,17 @@ fn list<'a>(f: &mut fmt::Formatter<'_>, named: impl Iterator<Item = &'a Describe
 
 /// A text in lines that begin with blanks.
 fn wrapped(text: &str, blanks: &str) -> String {
-    let mut lines = vec![blanks.to_owned()];
+    let mut lines = Vec::new();
+    let mut line = blanks.to_owned();
     for word in text.split_whitespace() {
-        let last = lines
-            .last_mut()
-            .filter(|line| line.len() == blanks.len() || line.chars().count() + word.chars().count() < WIDTH);
-        match last {
-            Some(line) if line.len() > blanks.len() => *line += &format!(" {word}"),
-            Some(line) => line.push_str(word),
-            None => lines.push(format!("{blanks}{word}")),
+        let is_begun = line.len() > blanks.len();
+        if is_begun && line.chars().count() + word.chars().count() >= WIDTH {
+            lines.push(std::mem::replace(&mut line, blanks.to_owned()));
+        } else if is_begun {
+            line.push(' ');
         }
+        line.push_str(word);
     }
+    lines.push(line);
     lines.join("\n")
 }
