@@ -55,13 +55,14 @@ pub struct Described {
 }
 
 /// Keys of a case file, and of files with the keys of more tables, by a path such as
-/// `newton.tolerance`, or by their last name alone, in any table. Tables that say the same of a key
+/// `newton.tolerance`, or by its last names alone, in any table. Tables that say the same of a key
 /// are given together. Empty if there is no such key.
 pub fn explained(path: &str, more: &[&'static Table]) -> Vec<ExplainedKey> {
     let all = every_key(more);
     let parts: Vec<&str> = path.split('.').collect();
     let at_path = |key: &&ExplainedKey| is_at(&key.key, &parts);
-    let by_name = |key: &&ExplainedKey| last_name(&key.key) == path;
+    let end = format!(".{path}");
+    let by_name = |key: &&ExplainedKey| key.key.ends_with(&end);
     let mut found: Vec<_> = all.iter().filter(at_path).collect();
     if found.is_empty() {
         found = all.iter().filter(by_name).collect();
@@ -209,7 +210,7 @@ impl fmt::Display for ExplainedKey {
         facts.push(("unit", self.unit.to_owned()));
         let default = self.default.map(str::to_owned);
         let without = if !self.required {
-            "none, or as said above"
+            "none, or as the text says"
         } else if self.unless.is_empty() {
             "none: the key is required"
         } else {

@@ -247,7 +247,7 @@ fn explain_and_schema_and_help() {
     let hu: serde_json::Value = serde_json::from_str(&output(&["explain", "hu", "--json"])).unwrap();
     assert_eq!((&hu["scheme"]["beta"], &hu["order"]), (&1.0.into(), &1.into()));
     let tolerance = output(&["explain", "newton.tolerance"]);
-    assert!(tolerance.contains("a number >") && tolerance.contains("[newton]"), "{tolerance}");
+    assert!(tolerance.contains("a number in (0, 1)") && tolerance.contains("[newton]"), "{tolerance}");
     // In the table of a contact with this name, too, and without the table.
     let enforcement = output(&["explain", "contact.enforcement"]);
     assert!(enforcement.contains("multiplier\n      ") && enforcement.contains("default\n  \"multiplier\""));
@@ -258,6 +258,7 @@ fn explain_and_schema_and_help() {
     assert_eq!(between["keys"][0]["unless"], "between");
     assert!(output(&["explain", "time.scheme.rho_inf"]).contains("scheme \"bathe\""));
     assert!(output(&["explain", "arm.set"]).contains("[[arm]]"));
+    assert!(output(&["explain", "mesh.size"]).contains("body.mesh.size"));
     let schema: serde_json::Value = serde_json::from_str(&output(&["schema"])).unwrap();
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     for command in
