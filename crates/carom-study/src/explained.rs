@@ -5,8 +5,8 @@ use carom_case::keys::Keys;
 
 use crate::file::StudyFile;
 
-/// Keys of case and study files by a path such as `contact.enforcement` or `arm.set`, or by its last
-/// names alone. Empty if there is no such key.
+/// Keys of case and study files by a path such as `contact.enforcement` or `arm.set`, or by its
+/// last names alone. Empty if there is no such key.
 pub fn explained(path: &str) -> Vec<ExplainedKey> {
     carom_case::explained(path, &[&StudyFile::TABLE])
 }
