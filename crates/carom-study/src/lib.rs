@@ -12,6 +12,7 @@ mod compute;
 mod distributed;
 mod error;
 mod expects;
+mod explained;
 mod file;
 mod jobs;
 mod matched;
@@ -27,6 +28,7 @@ mod verify;
 
 pub use distributed::{arm, collect, plan, plan_timed};
 pub use error::StudyError;
+pub use explained::{explained, similar_key};
 pub use jobs::{Ended, Event};
 pub use plan::{Plan, PlannedArm};
 pub use run::{Outcome, resume, start};

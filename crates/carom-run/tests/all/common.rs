@@ -114,6 +114,25 @@ pub(crate) fn continues_with_the_same_bits(case: &Case, mut whole: Simulation, s
     assert_eq!(whole.state(), resumed.state());
 }
 
+/// Stops a run in the first state for which a condition holds, and continues it for a while from
+/// its checkpoint.
+pub(crate) fn resumes_with_the_same_bits(text: &str, sets: &[String], there: impl Fn(&State) -> bool) {
+    const STEPS: usize = 80;
+    let mut whole = simulation(text, sets);
+    while !there(whole.state()) {
+        assert!(!whole.finished(), "{sets:?}");
+        whole.advance(&mut GridReport::default()).unwrap();
+    }
+    let checkpoint = postcard::to_stdvec(whole.state()).unwrap();
+    let state = postcard::from_bytes(&checkpoint).unwrap();
+    let mut resumed = carom_run::Setup::new(&case(text, sets)).resume(state).unwrap();
+    for _ in 0..STEPS {
+        whole.advance(&mut GridReport::default()).unwrap();
+        resumed.advance(&mut GridReport::default()).unwrap();
+    }
+    assert_eq!(resumed.state(), whole.state(), "{sets:?}");
+}
+
 /// Runs to the end.
 pub(crate) fn finish(mut sim: Simulation) -> Simulation {
     while !sim.finished() {

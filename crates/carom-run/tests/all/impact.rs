@@ -123,7 +123,7 @@ fn free_fall_is_that_of_the_scheme() {
         for mass in ["consistent", "lumped"] {
             let scheme = format!("time.scheme={scheme}");
             let mass = format!("body.cylinder.mass={mass}");
-            let mut sim = simulation(IMPACT, &[COARSE[0], COARSE[1], &scheme, &mass, "time.end=0.3"]);
+            let mut sim = simulation(IMPACT, &[COARSE[0], COARSE[1], &scheme, &mass, "time.end=0.15"]);
             while !sim.finished() {
                 sim.advance(&mut GridReport::default()).unwrap();
             }

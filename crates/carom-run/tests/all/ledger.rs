@@ -323,9 +323,15 @@ fn booked_works_leave_what_the_scheme_dissipates() {
     assert!(judged_pairs("friction", false, 1e-12) > 50);
 }
 
-/// The forces of a tie do no work, with every scheme. Displacements there are small: the digits of
-/// positions are fewer of the energies.
+/// The forces of a tie do no work. Displacements there are small: the digits of positions are fewer
+/// of the energies.
 #[test]
+fn booked_works_with_ties_leave_what_the_scheme_dissipates() {
+    judged_pairs("tie", false, 1e-8);
+}
+
+#[test]
+#[ignore = "every tie with every scheme: .ci/nightly"]
 fn booked_works_with_ties_leave_what_every_scheme_dissipates() {
     judged_pairs("tie", true, 1e-8);
 }

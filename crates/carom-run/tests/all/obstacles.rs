@@ -70,11 +70,22 @@ fn run(text: &str, sets: &[String], obstacle: &str) -> Option<Simulation> {
 
 #[test]
 fn a_floor_does_not_depend_on_its_description() {
+    assert!(same_floors(3) > 13);
+}
+
+#[test]
+#[ignore = "every combination: .ci/nightly"]
+fn a_floor_does_not_depend_on_its_description_in_any_combination() {
+    assert!(same_floors(1) > 40);
+}
+
+/// The number of combinations, every n-th of all, in which a disc bounces on every floor alike.
+fn same_floors(n: usize) -> usize {
     let (mut checked, mut wrong) = (0, Vec::new());
     // Without projection the active set chatters: a plane shifted by 1e-15 makes the same
     // difference.
     let chatters = |sets: &[String]| sets.iter().any(|set| set.contains("\"none\""));
-    for sets in combinations("floor").into_iter().filter(|sets| !chatters(sets)) {
+    for sets in combinations("floor").into_iter().filter(|sets| !chatters(sets)).step_by(n) {
         let [first, others @ ..] =
             FLOORS.map(|floor| run(DISC, &sets, &format!("contact.floor.primary={floor}")));
         let Some(first) = first else { continue };
@@ -92,7 +103,8 @@ fn a_floor_does_not_depend_on_its_description() {
         }
         checked += 1;
     }
-    assert!(wrong.is_empty() && checked > 40, "{checked}\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    checked
 }
 
 #[test]

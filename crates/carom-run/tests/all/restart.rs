@@ -82,8 +82,8 @@ fn every_state_alone_determines_the_next_one() {
     for (text, sets) in [
         (TOOL, vec![]),
         (TOOL, vec!["newton.tangent = \"frozen-double\""]),
-        (DISCS, vec!["time.end = 0.1"]),
-        (DISCS, vec!["time.end = 0.1", "time.scheme = { kind = \"chung-hulbert\", rho_inf = 0.5 }"]),
+        (DISCS, vec!["time.end = 0.08"]),
+        (DISCS, vec!["time.end = 0.08", "time.scheme = { kind = \"chung-hulbert\", rho_inf = 0.5 }"]),
     ] {
         let case = case_of(text, &sets);
         let mut whole = carom_run::Setup::new(&case).start().unwrap();

@@ -173,6 +173,9 @@ fn arguments_are_checked() {
         (&["explain", "bathe"], "scheme \"bathe\" needs `rho_inf`"),
         (&["explain", "hht", "alpha=-0.1"], "did you mean `alpha = 0.1`?"),
         (&["explain", "wbz", "rho=0.5"], "unknown key `rho`"),
+        (&["explain", "bathee"], "did you mean `bathe`?"),
+        (&["explain", "contact.enforcment"], "did you mean `contact.enforcement`?"),
+        (&["explain", "persistancy"], "did you mean `persistency`?"),
     ];
     for (arguments, part) in wrong {
         let done = place.carom(arguments);
@@ -243,6 +246,19 @@ fn explain_and_schema_and_help() {
     assert!(output(&["explain", "chung-hulbert", "rho_inf=0.1"]).contains("order 2"));
     let hu: serde_json::Value = serde_json::from_str(&output(&["explain", "hu", "--json"])).unwrap();
     assert_eq!((&hu["scheme"]["beta"], &hu["order"]), (&1.0.into(), &1.into()));
+    let tolerance = output(&["explain", "newton.tolerance"]);
+    assert!(tolerance.contains("a number in (0, 1)") && tolerance.contains("[newton]"), "{tolerance}");
+    // In the table of a contact with this name, too, and without the table.
+    let enforcement = output(&["explain", "contact.enforcement"]);
+    assert!(enforcement.contains("multiplier\n      ") && enforcement.contains("default\n  \"multiplier\""));
+    assert_eq!(output(&["explain", "contact.strike.enforcement"]), enforcement);
+    assert_eq!(output(&["explain", "enforcement"]), enforcement);
+    let between: serde_json::Value =
+        serde_json::from_str(&output(&["explain", "secondary", "--json"])).unwrap();
+    assert_eq!(between["keys"][0]["unless"], "between");
+    assert!(output(&["explain", "time.scheme.rho_inf"]).contains("scheme \"bathe\""));
+    assert!(output(&["explain", "arm.set"]).contains("[[arm]]"));
+    assert!(output(&["explain", "mesh.size"]).contains("body.mesh.size"));
     let schema: serde_json::Value = serde_json::from_str(&output(&["schema"])).unwrap();
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     for command in
