@@ -32,6 +32,9 @@ use crate::build::side::owner;
 use crate::build::{Materials, build, overlaps};
 use crate::quantity::quantity;
 
+/// Distance of sides that touch all over, over the length of a facet, beyond which a gap is one.
+const TOUCHING: f64 = 0.25;
+
 /// Stages in which the depths are reduced.
 const STAGES: u32 = 8;
 /// First τ as a multiple of the time in which a wave crosses the largest body.
@@ -116,12 +119,25 @@ pub(crate) fn keep(case: &Case, model: &mut Model) {
     add(case, model, |overlap| f64::from(u8::from(overlap == Overlap::KeepGap)));
     for (contact, spec) in model.contacts.iter_mut().zip(&case.contacts) {
         if spec.overlap == Overlap::Touch {
+            let near = TOUCHING * longest(&contact.facets[0].1, &model.initial_position, model.dimension);
             let kinematics = &mut contact.kinematics;
-            let depth = |node| -kinematics.signed_distance(node, &model.initial_position).unwrap_or(0.0);
+            let depth = |node| {
+                let distance = kinematics.signed_distance(node, &model.initial_position);
+                -distance.filter(|distance| distance.abs() <= near).unwrap_or(0.0)
+            };
             let depths: Vec<f64> = (0..kinematics.secondary().len()).map(depth).collect();
             kinematics.keep(&depths);
         }
     }
+}
+
+/// Distance between the first corners of the longest facet.
+fn longest(facets: &[Vec<usize>], y: &[f64], d: usize) -> f64 {
+    let length = |facet: &Vec<usize>| {
+        let [from, to] = [0, 1].map(|corner| facet.get(corner).map_or(0, |node| node * d));
+        (0..d).map(|i| (y[from + i] - y[to + i]).powi(2)).sum::<f64>().sqrt()
+    };
+    facets.iter().map(length).fold(0.0, f64::max)
 }
 
 /// Adds to the depths that the contacts keep a share of their initial overlap.

@@ -1,10 +1,12 @@
 //! Checks of contacts: two different bodies, each pair once, mass where the projection needs it,
 //! laws that are compatible with each other and with the scheme, and what a frozen ξ needs.
 
+use carom_solid::Element;
+
 use super::super::spec::SKIN;
 use super::super::{
-    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Method, ObstacleMotion, Persistency,
-    PrimarySpec,
+    ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Method, ObstacleMotion, Overlap,
+    Persistency, PrimarySpec,
 };
 use super::{Check, Node};
 
@@ -142,6 +144,15 @@ impl Check<'_> {
         if contact.detection == Detection::Trajectory || contact.xi == ContactPoint::Frozen {
             let why = "trajectories of single nodes do not decide about a gap that is an average";
             refuse("with the detection of the paper", why, "leave `detection` and `xi` out");
+        }
+        let linear = |body: &&str| {
+            let of = draft.body.iter().flatten().find(|of| of.name == **body);
+            of.is_some_and(|of| matches!(of.element, Element::T3 | Element::Q4))
+        };
+        if contact.overlap == Overlap::Relax && contact.bodies().any(|body| linear(&body)) {
+            let why = "the share of straight cells in the overlap of curved sides is not known on average";
+            let hint = "use elements of higher degree, or method = \"node-to-segment\"";
+            refuse("with overlap = \"relax\" and straight cells", why, hint);
         }
         if let Some(scheme) = scheme.filter(|scheme| scheme.nonsmooth().is_some()) {
             let why = "its steps solve for impulses on single nodes";

@@ -165,6 +165,11 @@ impl<N: Kinematics, B: Kinematics> Kinematics for Joined<N, B> {
         kind.is_of_field(node)
     }
 
+    fn area(&self, node: usize) -> Option<f64> {
+        let (kind, node) = self.of(node);
+        kind.area(node)
+    }
+
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {
         let own = &pairs[..pairs.partition_point(|pair| pair.node < self.count())];
         self.nodes.pressure_field(own, y, thickness)

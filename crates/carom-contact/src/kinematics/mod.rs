@@ -192,9 +192,15 @@ pub trait Kinematics: Send + Sync {
         false
     }
 
+    /// Area of the reference surface, of thickness one, for which a secondary node, given by index,
+    /// stands as a coefficient of a pressure field; none of a node or an edge.
+    fn area(&self, _node: usize) -> Option<f64> {
+        None
+    }
+
     /// Pressures at the nodes of the secondary side, where the pairs are coefficients of a pressure
-    /// field; none where they are forces on nodes. `y`: positions; `thickness`: of the
-    /// bodies.
+    /// field; none where they are forces on nodes. `y`: positions;
+    /// `thickness`: thickness of the bodies.
     fn pressure_field(&self, _pairs: &[Pair], _y: &[f64], _thickness: f64) -> Vec<NodalPressure> {
         Vec::new()
     }

@@ -20,7 +20,10 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
         let mut depth = |(place, &node): (usize, &usize)| -> f64 {
             let kept = contact.kinematics.kept(place);
             let below = contact.kinematics.signed_distance(place, y).map(|gap| -gap);
-            if has_gaps(model, contact) || below.is_some_and(|below| below <= 0.0) {
+            if contact.kinematics.is_of_field(place)
+                || has_gaps(model, contact)
+                || below.is_some_and(|below| below <= 0.0)
+            {
                 return below.unwrap_or(0.0).max(0.0);
             }
             let own = part_of(model, node);

@@ -306,6 +306,10 @@ fn derivative_of_direction(
                 && contact.kinematics.measure(&mut middle, place, rows).is_ok()
             {
                 let measured = rows.row(0);
+                if measured.nodes.is_empty() {
+                    contact.kinematics.curvature_into(pair, y, &mut matrix);
+                    return matrix;
+                }
                 let change = if start.is_finite() { row.gap - start } else { measured.along(&at.increment) };
                 gradient.evaluate(measured, change, place, &at.increment);
                 contact.kinematics.curvature_into(&middle, place, &mut matrix);

@@ -97,7 +97,8 @@ impl Equations<'_> {
         if at_middle && pair.start.is_none() {
             // The initial gap of a new pair; later it is updated.
             pair.start = match self.gap_at_start(k, pair, rows) {
-                Ok(gap) => Some(gap),
+                // A part of a surface that faces nothing has no gap yet.
+                Ok(gap) => Some(gap).filter(|gap| gap.is_finite()),
                 Err(error) if pair.active => return Err(error),
                 Err(_) => None,
             };
@@ -123,7 +124,7 @@ impl Equations<'_> {
         gap: f64,
         evaluation: &mut Evaluation,
     ) -> Result<(), ContactError> {
-        let Evaluation { at, place, turned, gradient, .. } = evaluation;
+        let Evaluation { at, place, turned, gradient, rows, .. } = evaluation;
         let turned = &mut turned[k];
         if !pair.active {
             turned.push_open();
@@ -132,6 +133,12 @@ impl Equations<'_> {
         let start = self.gap_at_start(k, pair, turned)?;
         self.model.contacts[k].kinematics.measure(&mut pair.clone(), place, turned)?;
         let p = turned.len() - 1;
+        if turned.row(p).nodes.is_empty() {
+            // It faces the other side at the end only.
+            turned.pop();
+            turned.push_row(rows[k].row(p));
+            return Ok(());
+        }
         // A part of a surface that faced nothing at the start had no gap that could change.
         let change = if start.is_finite() { gap - start } else { turned.row(p).along(&at.increment) };
         gradient.evaluate(turned.row(p), change, place, &at.increment);

@@ -81,9 +81,9 @@ impl Bodies<'_> {
         }
     }
 
-    /// The corners of a side, but of the sides of `earlier` contacts, against the facets of another
-    /// one, which they may enter a little: a gap that is zero on average does not keep a corner
-    /// out.
+    /// The corners of a side, except those on sides of `earlier` contacts, against the facets of
+    /// another one, which they may enter a little: a gap that is zero on average does not keep a
+    /// corner out.
     fn corners(&self, [of, into]: [&Side; 2], earlier: &[Side], [own, other]: [&Surface; 2]) -> NodeToFacet {
         let corners = own.corners(self.reference);
         let NodesWithDepth { nodes, depths } = self.others(of, earlier, into, &[]);

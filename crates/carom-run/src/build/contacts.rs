@@ -93,6 +93,11 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
     let stick = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
     let mut friction = friction(case, spec, rubbing, reference, &facets)?;
     if let Some(friction) = &mut friction {
+        if let Some(shear) = spec.friction.shear {
+            for (node, limit) in friction.limits.iter_mut().enumerate() {
+                *limit = kinematics.area(node).map_or(*limit, |area| shear * case.thickness * area);
+            }
+        }
         friction.edges = kinematics.secondary().len() - rubbing.len();
         if spec.enforcement == Enforcement::Penalty {
             friction.springs = normal[..rubbing.len()].iter().map(|of| stick * of).collect();

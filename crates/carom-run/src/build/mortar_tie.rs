@@ -8,8 +8,8 @@
 //! x_b = [Σ_l (∫ Φ_b N̂_l dΓ) y_l − Σ_a (∫ Φ_b N_a dΓ) x_a] / ∫ Φ_b N_b dΓ
 //! ```
 //!
-//! over the reference configuration, cut at the ends of the primary facets. A traction that is
-//! constant, or of the degree of Φ, passes. Ends a of a side are points of the primary themselves:
+//! over the reference configuration, cut at the ends of the primary facets. A constant traction
+//! passes. Ends a of a side are points of the primary themselves:
 //! supports and other ties may hold them. Their Φ_a is added to that of the next node of the facet,
 //! so that the Φ_b that remain still sum to one. On curves ∫ N_b is positive for all degrees.
 
@@ -25,7 +25,7 @@ use super::tie_side::TieSide;
 type Weights = BTreeMap<usize, f64>;
 
 /// Weight that is round-off.
-const ROUND_OFF: f64 = 1e-14;
+const ROUND_OFF: f64 = 1e-12;
 
 /// Distance in ξ below which two cuts are one.
 const CLOSE: f64 = 1e-9;
@@ -60,13 +60,17 @@ pub(super) fn weights(
     let mut all: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
     for (node, mean) in means {
         let mut weights = mean.other;
-        for (end, area) in &mean.ends {
-            for &(carrier, weight) in points.get(end).into_iter().flatten() {
+        for (&end, area) in &mean.ends {
+            // The end of a slit belongs to both sides, and carries itself.
+            let itself = vec![(end, 1.0)];
+            for &(carrier, weight) in points.get(&end).unwrap_or(&itself) {
                 *weights.entry(carrier).or_default() -= area * weight;
             }
         }
         weights.values_mut().for_each(|weight| *weight /= mean.own);
         weights.retain(|_, weight| weight.abs() > ROUND_OFF);
+        let sum: f64 = weights.values().sum();
+        weights.values_mut().for_each(|weight| *weight /= sum);
         all.insert(node, weights.into_iter().collect());
     }
     let of_ends = points.into_iter().filter(|(node, _)| ends.contains(node));
@@ -74,7 +78,7 @@ pub(super) fn weights(
     all
 }
 
-/// The condition of a node.
+/// Integrals from which the position of a secondary node follows.
 #[derive(Default)]
 struct Mean {
     /// ∫ Φ_b N_b.

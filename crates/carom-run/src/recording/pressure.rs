@@ -91,7 +91,8 @@ impl Surfaces {
         let mut pressures = self.of_forces(model, state);
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
             for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
-                pressures.insert(of.node, of.actual);
+                // Forces of other contacts may act there, too.
+                *pressures.entry(of.node).or_default() += of.actual;
             }
         }
         pressures
@@ -190,10 +191,16 @@ fn forces(model: &Model, state: &State) -> BTreeMap<usize, Load> {
                 continue;
             }
             let row = rows.row(0);
-            let along = Vector(row.first());
+            let is_of_field = contact.kinematics.is_of_field(pair.node);
+            let mean = Vector(row.first());
+            let along = if is_of_field { mean * mean.norm().recip() } else { mean };
             for (k, (&node, slope)) in
                 row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)).enumerate()
             {
+                if is_of_field && k < row.own {
+                    // Its pressure is known.
+                    continue;
+                }
                 let mut force = Vector::ZERO;
                 slope.iter().enumerate().for_each(|(i, slope)| force[i] = -pair.lambda * slope);
                 // The sides are pressed by opposite forces.

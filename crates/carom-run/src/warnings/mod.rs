@@ -62,7 +62,7 @@ pub const WARNINGS: [Entry; 22] = [
         id: "unmatched-pressure",
         why: "node-to-segment contact fails the patch test on non-matching meshes: pressures and stresses at the \
               contact surface have errors of 10 % or more",
-        advice: "method = \"mortar\" in the plane, matching meshes, or resultants, or probes a few cells away from the contact",
+        advice: "method = \"mortar\" in the plane, matching meshes, resultants, or probes a few cells away",
         rule: Rule::Model(meshes::unmatched_pressure),
     },
     Entry {

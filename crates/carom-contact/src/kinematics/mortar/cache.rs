@@ -1,4 +1,4 @@
-//! What is known of the secondary facets at one configuration.
+//! Quadrature points and gaps of the secondary facets at one configuration.
 
 use super::cut::Opposed;
 use super::multipliers::MOST;
@@ -17,7 +17,7 @@ pub(super) struct Measured {
 #[derive(Debug, Default)]
 pub(super) struct Faced {
     pub(super) points: Vec<Measured>,
-    /// First and last ξ that faces the primary.
+    /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,
     /// For each polynomial the one whose multiplier carries it.
     pub(super) carriers: [usize; MOST],

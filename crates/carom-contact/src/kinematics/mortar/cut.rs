@@ -10,7 +10,9 @@
 //!
 //! on which both have the same gap, and at an end or a kink of more than 30° the normal (x − y_v)·t
 //! = 0. What lies beyond an end has no partner and does not count. The gap is continuous at the
-//! borders, so that the derivatives of the weighted gap need not account for their motion.
+//! joints, so that the derivatives of the weighted gap need not account for their motion; at an end
+//! they leave out what the motion of the end adds, the gap there times its path, which is zero in
+//! contact.
 
 use carom_algebra::Vector;
 
@@ -21,7 +23,7 @@ use crate::places::Places;
 /// Parts of a facet, in ξ, that are not worth integrating over.
 const ROUND_OFF: f64 = 1e-14;
 
-/// What belongs to a facet of the primary.
+/// Region of the points that belong to a facet of the primary.
 #[derive(Debug)]
 pub(super) struct Region {
     /// A line at the start of the facet: a point on it, and the direction towards the facet.
@@ -106,12 +108,12 @@ pub(super) struct Opposed {
     pub(super) eta: f64,
 }
 
-/// What of a secondary facet faces the primary.
+/// Part of a secondary facet that faces the primary.
 #[derive(Debug, Default)]
 pub(super) struct Facing {
     /// Points of quadrature in the order of ξ.
     pub(super) points: Vec<Opposed>,
-    /// First and last ξ.
+    /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,
 }
 
@@ -122,7 +124,8 @@ struct Part<'a> {
     region: &'a Region,
 }
 
-/// What of a secondary facet faces the facets of the primary with these regions at positions `y`;
+/// Finds the part of a secondary facet that faces facets of the primary with these regions at
+/// positions `y`;
 /// `rule`: points and weights of quadrature on −1 … 1.
 pub(super) fn facing(
     own: Facet,

@@ -17,9 +17,9 @@ use crate::pair::Pair;
 use crate::places::Places;
 
 impl Mortar {
-    /// The pressures of pairs at the nodes of their facets. At a joint, where the pressure per
-    /// deformed area jumps with the stretch, it is the mean of both sides; at a corner, where each
-    /// facet has a pressure of its own, the larger one.
+    /// The pressures of pairs at all nodes of the secondary side. At a joint, where the pressure
+    /// per deformed area jumps with the stretch, it is the mean of both sides; at a corner, where
+    /// each facet has a pressure of its own, the larger one.
     pub(super) fn field(&self, pairs: &[Pair], y: Places, thickness: f64) -> Vec<NodalPressure> {
         let mut coefficients: BTreeMap<(usize, usize), f64> = BTreeMap::new();
         for pair in pairs.iter().filter(|pair| pair.active) {
@@ -29,14 +29,14 @@ impl Mortar {
                 coefficients.insert((part.facet, part.polynomial), coefficient);
             }
         }
-        let mut facets: Vec<usize> = coefficients.keys().map(|(facet, _)| *facet).collect();
-        facets.dedup();
+        let facets = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
         let faced: Vec<(Option<[f64; 2]>, [usize; MOST])> =
             self.at(y, |of_facets| of_facets.iter().map(|of| (of.ends, of.carriers)).collect());
         let mut at_nodes: BTreeMap<usize, Vec<NodalPressure>> = BTreeMap::new();
         for facet in facets {
             let own = self.secondary.facet(facet);
-            let (Some([from, to]), carriers) = faced[facet] else { continue };
+            let (ends, carriers) = faced[facet];
+            let [from, to] = ends.unwrap_or([-1.0, 1.0]);
             for (place, &node) in own.nodes.iter().enumerate() {
                 let xi = coordinate(own.nodes.len(), place).clamp(from, to);
                 let of = |number: usize| {

@@ -37,9 +37,9 @@ impl Mortar {
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let places = || self.surface.iter().flat_map(|&node| y.coordinates(node)).copied();
         if cache.places.is_empty() || !cache.places.iter().copied().eq(places()) {
+            cache.of_facets = self.measure_facets(y);
             cache.places.clear();
             cache.places.extend(places());
-            cache.of_facets = self.measure_facets(y);
         }
         of(&cache.of_facets)
     }

@@ -26,6 +26,14 @@ use crate::places::Places;
 use crate::rows::Rows;
 
 impl Mortar {
+    /// Share of the area of a multiplier that faces the primary in the reference configuration.
+    fn cover_at_start(&self, multiplier: usize) -> f64 {
+        let Some(&first) = self.order.first() else { return 0.0 };
+        let all = Pair { reach: self.order.len(), ..Pair::open(multiplier, first, 0.0) };
+        let samples = self.samples(&all, self.reference()).unwrap_or_default();
+        samples.iter().map(|sample| sample.share).sum()
+    }
+
     /// Weighted gap of a multiplier in the reference configuration, without what it keeps.
     fn gap_at_start(&self, multiplier: usize) -> Option<f64> {
         Some(self.signed_distance(multiplier, &self.reference)? - self.kept(multiplier))
@@ -38,11 +46,12 @@ impl Mortar {
         nodes.map(move |(place, &node)| (node, depth(place).max(0.0)))
     }
 
-    /// Moves the recorded contact point of a pair to the closest point of the sample that weighs
-    /// most.
+    /// Moves the recorded contact point of a pair to that of the sample on the middle facet of its
+    /// window that weighs most.
     fn mark(pair: &mut Pair, samples: &[Sample]) {
-        let heaviest = samples.iter().max_by(|a, b| a.share.total_cmp(&b.share));
-        pair.xi = heaviest.map_or(pair.xi, |sample| sample.eta);
+        let of_facet = samples.iter().filter(|sample| sample.facet == pair.facet);
+        let heaviest = of_facet.max_by(|a, b| a.share.total_cmp(&b.share));
+        pair.xi = heaviest.map_or(pair.xi, |sample| sample.eta.clamp(-1.0, 1.0));
     }
 }
 
@@ -51,13 +60,18 @@ impl Kinematics for Mortar {
         &self.nodes
     }
 
-    /// None: a multiplier is no node.
+    /// Multipliers are not nodes, so the count is 0.
     fn nodes(&self) -> usize {
         0
     }
 
     fn keep(&mut self, depths: &[f64]) {
         self.kept = depths.to_vec();
+        let depth = |(multiplier, depth): (usize, &f64)| {
+            let cover = self.cover_at_start(multiplier);
+            if cover > 0.0 { depth / cover } else { 0.0 }
+        };
+        self.kept_depths = depths.iter().enumerate().map(depth).collect();
         let all: f64 = (0..self.nodes.len()).filter_map(|of| self.gap_at_start(of)).map(f64::abs).sum();
         let kept: f64 = depths.iter().map(|depth| depth.abs()).sum();
         let share = if all > 0.0 { kept / all } else { 0.0 };
@@ -76,7 +90,7 @@ impl Kinematics for Mortar {
         self.primary.facet(pair.facet).nodes
     }
 
-    /// Never: the nodes of a closed pair have gaps of their own.
+    /// Pairs never count as lying on one facet: nodes have gaps of their own.
     fn is_on_facet(&self, _: &Pair) -> bool {
         false
     }
@@ -86,7 +100,8 @@ impl Kinematics for Mortar {
     }
 
     fn signed_distance(&self, multiplier: usize, y: &[f64]) -> Option<f64> {
-        let all = Pair { reach: self.order.len(), ..Pair::open(multiplier, self.order[0], 0.0) };
+        let first = *self.order.first()?;
+        let all = Pair { reach: self.order.len(), ..Pair::open(multiplier, first, 0.0) };
         let mut rows = Rows::new(2);
         self.measure(&mut all.clone(), y, &mut rows).ok()?;
         let gap = rows.pop();
@@ -123,10 +138,11 @@ impl Kinematics for Mortar {
         }
         let facing = self.primary.shape.nodes();
         let stencil = self.stencil(pair);
-        let mut gap = self.kept(pair.node);
+        let mut gap = 0.0;
+        let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         for sample in &samples {
-            gap += sample.share * sample.gap.distance;
+            gap += sample.share * (sample.gap.distance + kept);
             stencil.add_row(self, sample, sample.gap.gradient(facing), &mut slopes);
         }
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
@@ -139,6 +155,10 @@ impl Kinematics for Mortar {
 
     fn is_of_field(&self, _: usize) -> bool {
         true
+    }
+
+    fn area(&self, multiplier: usize) -> Option<f64> {
+        Some(self.multipliers[multiplier].area)
     }
 
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {

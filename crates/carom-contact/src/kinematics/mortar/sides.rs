@@ -18,7 +18,7 @@ pub struct Mortar {
     pub(super) primary: Surface,
     /// Facets of the primary side, each followed by the next one along the side if there is one.
     pub(super) order: Vec<usize>,
-    /// Place of each facet of the primary in that order.
+    /// Place of each facet of the primary in `order`.
     pub(super) place: Vec<usize>,
     pub(super) multipliers: Vec<Multiplier>,
     /// Nodes that represent the multipliers.
@@ -35,9 +35,11 @@ pub struct Mortar {
     pub(super) cache: Mutex<Cache>,
     /// Initial depth that is kept for each multiplier; empty if all are zero.
     pub(super) kept: Vec<f64>,
+    /// Depth that is kept at every point of a multiplier's part of the side.
+    pub(super) kept_depths: Vec<f64>,
     /// Nodes of both sides against the other one: none may pass through it.
     pub(super) sides: BothSides<NodeToFacet>,
-    /// Initial depths that these nodes keep: their own, where the multipliers keep theirs.
+    /// Initial depths that are kept at the nodes of both sides; multipliers keep `kept`.
     pub(super) sides_kept: Vec<(usize, f64)>,
 }
 
@@ -78,6 +80,7 @@ impl Mortar {
             rule,
             reference: reference.to_vec(),
             kept: Vec::new(),
+            kept_depths: Vec::new(),
             sides,
             sides_kept: Vec::new(),
         }

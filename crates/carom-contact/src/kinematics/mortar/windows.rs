@@ -19,7 +19,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// Whether it contains a place.
+    /// Whether the window contains a place.
     pub(super) fn contains(self, place: usize) -> bool {
         (self.first..=self.last).contains(&place)
     }
