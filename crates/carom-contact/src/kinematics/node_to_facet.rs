@@ -514,9 +514,7 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        // The row of a round part is made of that with one facet (`tip_to_facet.rs`).
-        let is_single = self.single || self.is_frozen() || !self.radii.is_empty();
-        if is_single || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        if self.single || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;

@@ -21,9 +21,11 @@
 //! circle has no unique point closest to its centre. A narrow one passes between the nodes, or
 //! slides over them as over the teeth of a comb. A part has a row where r < h, so that contact is
 //! hardly wider than a facet; elsewhere h²/8r ≤ h/8. Where it meets a node, it is left to that node
-//! if the rows of both would be the same.
+//! if the rows of both would be the same. Over a joint of facets its row is the mean of theirs, as
+//! that of a node (`joint.rs`), but with friction: the slip is that on one facet.
 
 use super::carrier::{Carrier, Local};
+use super::joint::OnFacets;
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::{Point, Tip, dot};
@@ -77,7 +79,7 @@ impl TipToFacet {
     /// Contact of the convex parts of an obstacle with a side; `reference`: the reference
     /// positions, flat over all nodes.
     pub fn new(obstacle: &NodeToObstacle, side: Surface, reference: &[f64]) -> Self {
-        let tips = obstacle.shape.tips();
+        let tips = obstacle.tips.clone();
         let nodes = reference.len() / 2;
         let nearest = |tip: &Tip| {
             let square =
@@ -98,6 +100,12 @@ impl TipToFacet {
     #[must_use]
     pub fn with_springs(self) -> Self {
         Self { leaves: false, ..self }
+    }
+
+    /// Contact in which a part over a joint has a pair with one facet.
+    #[must_use]
+    pub fn with_single_facets(self) -> Self {
+        Self { centers: self.centers.with_single_facets(true), ..self }
     }
 
     /// Positions of the nodes, then of the centres.
@@ -305,10 +313,18 @@ impl Kinematics for TipToFacet {
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let count = self.side.nodes_of(pair.facet).len();
+        let all = self.with_centers(y);
+        let facets = self.centers.parts(pair, &all).map(|part| part.facet);
+        let mut nodes: Vec<usize> = Vec::new();
+        for &node in facets.flat_map(|facet| self.side.nodes_of(facet)) {
+            if !nodes.contains(&node) {
+                nodes.push(node);
+            }
+        }
+        let count = nodes.len();
         let own = 2 * (1 + count);
         let mut of_center = vec![0.0; own * own];
-        self.centers.curvature_into(pair, &self.with_centers(y), &mut of_center);
+        self.centers.curvature_into(pair, &all, &mut of_center);
         // Every node moves one of the nodes of the gap, with a weight: that of the facet or the
         // centre.
         let facet = (1..=count).map(|node| (node, 1.0));
