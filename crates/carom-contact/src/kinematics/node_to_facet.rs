@@ -243,6 +243,12 @@ impl NodeToFacet {
                     let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
                     if leaves { Next::Leave } else { Next::Stay }
                 }
+                // Two springs at a blunt joint are too stiff, and the second begins with a depth.
+                Next::Concave(..)
+                    if self.single && self.is_blunt(pair.facet, u8::from(pair.xi > 0.0), placed.flat()) =>
+                {
+                    Next::Stay
+                }
                 next => next,
             }
         };

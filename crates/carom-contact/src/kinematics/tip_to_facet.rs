@@ -73,6 +73,8 @@ pub struct TipToFacet {
     centers: NodeToFacet,
     /// Whether a part is left to a node that it meets.
     leaves: bool,
+    /// Whether a part over a joint has one facet.
+    single: bool,
 }
 
 impl TipToFacet {
@@ -92,7 +94,16 @@ impl TipToFacet {
         let numbers = (nodes..nodes + tips.len()).collect();
         let centers = NodeToFacet::new(numbers, side.clone(), Detection::ClosestPoint)
             .with_radii(tips.iter().map(|tip| tip.radius).collect());
-        Self { tips, carrier: obstacle.carrier.clone(), nodes, names, side, centers, leaves: true }
+        Self {
+            tips,
+            carrier: obstacle.carrier.clone(),
+            nodes,
+            names,
+            side,
+            centers,
+            leaves: true,
+            single: false,
+        }
     }
 
     /// Contact by springs, whose rows may depend on each other: no part is left to a node, after
@@ -105,7 +116,7 @@ impl TipToFacet {
     /// Contact in which a part over a joint has a pair with one facet.
     #[must_use]
     pub fn with_single_facets(self) -> Self {
-        Self { centers: self.centers.with_single_facets(true), ..self }
+        Self { single: true, ..self }
     }
 
     /// Positions of the nodes, then of the centres.
@@ -269,6 +280,7 @@ impl Kinematics for TipToFacet {
     ) -> bool {
         let [before, now] = [before, now].map(|y| self.with_centers(y));
         let changed = self.named(events, |events| self.centers.search(&before, &now, pairing, events));
+        pairing.pairs.iter_mut().filter(|_| self.single).for_each(|pair| pair.joint = None);
         let known = pairing.pairs.len();
         let mut beside = Vec::new();
         pairing.pairs.iter().for_each(|pair| self.beside(pair, &now, &pairing.pairs, &mut beside));

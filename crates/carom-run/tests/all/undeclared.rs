@@ -194,7 +194,10 @@ fn an_edge_of_a_rigid_surface_between_nodes_is_said() {
     let surface = |half_width: f64| {
         let path = folder.path().join(format!("box-{half_width}.stl"));
         std::fs::write(&path, on_a_box(half_width)).unwrap();
-        format!("contact=[{{ name = \"c\", secondary = \"block.skin\", primary = {{ surface = {{ file = \"{}\" }} }} }}]", path.display())
+        format!(
+            "contact=[{{ name = \"c\", secondary = \"block.skin\", primary = {{ surface = {{ file = \"{}\" }} }} }}]",
+            path.display()
+        )
     };
     let case = r#"
 dimension = 3
