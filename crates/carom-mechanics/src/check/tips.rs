@@ -7,7 +7,9 @@
 //! chords between them are inside. Contacts in the plane hold the parts (`tip_to_facet.rs` of
 //! `carom-contact`); in space nothing does, and what is deep is warned of (`undeclared.rs`).
 
-use crate::check::skins::{BodySkin, length, part_of, skin_nodes};
+use carom_solid::Bounds;
+
+use crate::check::skins::{BodySkin, length, part_of, position, skin_nodes};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
 
@@ -87,13 +89,19 @@ impl Tips {
         let contact = &model.contacts[self.contact];
         let secondary = contact.kinematics.secondary().len();
         let kept = (0..secondary).map(|node| contact.kinematics.kept(node)).fold(0.0, f64::max);
+        // Beyond a plane of symmetry a boundary is continued, but not what is said of its distance.
+        let mut extent = Bounds::EMPTY;
+        let is_held = secondary > contact.kinematics.nodes();
+        let measured = self.boundary.iter().filter(|_| !is_held);
+        measured.for_each(|&node| extent.add(&position(y, model.dimension, node)));
         let mut found = Vec::new();
         for (number, (known, tip)) in self.all.iter_mut().zip(contact.kinematics.tips(y)).enumerate() {
             let carom_contact::Tip { center: at, radius, .. } = tip;
             let square: f64 = (0..3).map(|i| (at[i] - known.at[i]).powi(2)).sum();
             known.clearance -= square.sqrt();
             known.at = at;
-            if known.clearance > 0.0 {
+            let may_be_inside = is_held || extent.grown(radius).contains(&at);
+            if known.clearance > 0.0 || !may_be_inside {
                 continue;
             }
             if !std::mem::replace(is_current, true) {
@@ -104,7 +112,6 @@ impl Tips {
             known.near = Some(nearest.facet);
             let facet = skin.facet_nodes(nearest.facet);
             let place = contact.kinematics.nodes() + number;
-            let is_held = place < secondary;
             let length = length(model, facet);
             let counts = tip.permitted(length);
             let is_wide = is_held || counts > 0.0;
