@@ -75,7 +75,7 @@ impl NodeToObstacle {
     #[must_use]
     pub fn with_lengths(self, lengths: Vec<f64>) -> Self {
         let tips = self.shape.tips(0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min));
-        Self { lengths, tips, ..self }
+        Self { tips, lengths, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.

@@ -13,8 +13,8 @@ use crate::check::skins::{BodySkin, length, part_of, position, skin_nodes};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
 
-/// Allowed depth, over the length of a facet, of wide parts: chords of facets that lie on a circle
-/// are inside it.
+/// Allowed depth, over the length of a facet, of all parts: chords of facets that lie on a circle are
+/// inside it, and curved facets bulge beside a sharp edge.
 const SHARE: f64 = 0.25;
 
 /// The convex parts of the obstacle of a contact.
@@ -114,8 +114,6 @@ impl Tips {
             let place = contact.kinematics.nodes() + number;
             let length = length(model, facet);
             let counts = tip.permitted(length);
-            let is_wide = is_held || counts > 0.0;
-            let share = if is_wide { SHARE.max(contact.depths.others) } else { contact.depths.others };
             let depth = radius - nearest.distance - kept;
             found.push(Pierced {
                 node: facet[0],
@@ -123,7 +121,7 @@ impl Tips {
                 is_held,
                 depth,
                 counts,
-                limit: share * length,
+                limit: SHARE.max(contact.depths.others) * length,
                 length,
             });
         }

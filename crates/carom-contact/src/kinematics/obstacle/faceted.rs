@@ -106,13 +106,13 @@ impl Faceted {
         Self(Arc::new(Surface { triangles, normals, edges, edges_of, corners, tree }))
     }
 
-    /// Points of the rims and of the sharp convex edges, their ends among them.
+    /// Points of the sharp convex edges, their ends among them.
     pub(crate) fn tips(&self, spacing: f64) -> Vec<Tip> {
         let surface = &*self.0;
         let points = surface.triangles.points();
         let mut tips = Vec::new();
         for (face, edge) in (0..surface.faces()).flat_map(|face| [0, 1, 2].map(|edge| (face, edge))) {
-            let is_sharp = surface.triangles.across(face, edge).is_none_or(|next| {
+            let is_sharp = surface.triangles.across(face, edge).is_some_and(|next| {
                 let turn = dot(surface.normals[face], surface.normals[next]);
                 face < next && turn < CORNER_COSINE && surface.is_convex(face, edge)
             });
