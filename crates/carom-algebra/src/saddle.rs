@@ -12,7 +12,10 @@
 //! (1 + C/TᵀT)^−½.
 //!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
-//! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). If S is
+//! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). The pivot
+//! of a row in TᵀT, over its diagonal, is the square of the sine of its angle to the earlier rows in
+//! the metric of S⁻¹. If it is round-off, the earlier rows say what that row says, and nothing
+//! determines its multiplier: it is left out, with the multiplier zero. If S is
 //! positive definite only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution
 //! and is positive definite everywhere (ibid., §3.5: the augmented Lagrangian). Otherwise (a
 //! buckling structure) the whole matrix is factored with pivoting (Bunch, Kaufman).
@@ -24,11 +27,9 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
-use crate::linear::LinearError;
 use crate::pivots::{Room, diagonal_size};
 
-/// Pivot, as a fraction of the square of a row of G, below which the row depends linearly on the
-/// others.
+/// Pivot over the diagonal below which it is round-off: about 50 times that of a product.
 const DEPENDENT: f64 = 1e-14;
 /// Number of inverse iterations for the smallest singular value.
 const INVERSE_ITERATIONS: usize = 8;
@@ -71,6 +72,8 @@ pub struct Saddle {
     yields: Vec<f64>,
     /// Scale σ of each row of G.
     scales: Vec<f64>,
+    /// Rows of G that depend linearly on earlier ones.
+    dependent: Vec<usize>,
     nonzeros: Vec<usize>,
     room: Room,
     /// Factor of the whole saddle-point matrix if S is not positive definite.
@@ -150,20 +153,20 @@ impl Saddle {
         self.directions[row * self.size + j] += value;
     }
 
-    /// Factors the saddle point and returns whether S is positive definite.
-    ///
-    /// # Errors
-    /// The rows are linearly dependent.
-    pub fn factor(&mut self) -> Result<bool, LinearError> {
+    /// Factors the saddle point and returns whether S is positive definite. Then rows that depend
+    /// linearly on earlier ones are left out.
+    pub fn factor(&mut self) -> bool {
         let n = self.size;
         let m = self.count;
         let stiffness = self.stiffness.clone();
         self.indefinite = None;
         self.skew = None;
-        if cholesky(&mut self.stiffness, n, &mut self.room).is_err() {
+        self.dependent.clear();
+        let size = diagonal_size(self.stiffness.iter().step_by(n + 1).copied());
+        if self.room.cholesky(MatMut::from_column_major_slice_mut(&mut self.stiffness, n, n), size).is_err() {
             self.stiffness = stiffness;
             self.indefinite = Some(self.whole());
-            return Ok(false);
+            return false;
         }
         self.substitute_rows();
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
@@ -177,17 +180,43 @@ impl Saddle {
         if !self.directions.is_empty() {
             let mut u = MatMut::from_column_major_slice_mut(&mut self.directions, n, m);
             solve_lower_triangular_in_place(lower, u.rb_mut(), Par::Seq);
-            let mut product = Mat::zeros(m, m);
-            matmul(product.as_mut(), Accum::Replace, t.transpose(), u.rb(), 1.0, Par::Seq);
-            (0..m).for_each(|i| product[(i, i)] += self.yields[i]);
-            self.skew = Some(product.partial_piv_lu());
         }
         (0..m).for_each(|i| self.small[i * m + i] += self.yields[i]);
-        let diagonal: Vec<f64> = (0..m).map(|i| self.small[i * m + i]).collect();
-        let dependent = |pivot: usize| LinearError::Singular { size: n + m, pivot: n + pivot, value: 0.0 };
-        cholesky(&mut self.small, m, &mut self.room).map_err(dependent)?;
-        let repeats = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
-        (0..m).find(repeats).map_or(Ok(true), |i| Err(dependent(i)))
+        self.factor_independent();
+        if !self.directions.is_empty() {
+            let t = MatRef::from_column_major_slice(&self.rows, n, m);
+            let u = MatRef::from_column_major_slice(&self.directions, n, m);
+            let mut product = Mat::zeros(m, m);
+            matmul(product.as_mut(), Accum::Replace, t.transpose(), u, 1.0, Par::Seq);
+            (0..m).for_each(|i| product[(i, i)] += self.yields[i]);
+            self.dependent.iter().for_each(|&i| product[(i, i)] = 1.0);
+            self.skew = Some(product.partial_piv_lu());
+        }
+        true
+    }
+
+    /// Factors TᵀT without the rows that depend linearly on earlier ones: theirs become those of
+    /// the identity.
+    fn factor_independent(&mut self) {
+        let n = self.size;
+        let m = self.count;
+        let mut product = self.small.clone();
+        let diagonal: Vec<f64> = (0..m).map(|i| product[i * m + i]).collect();
+        loop {
+            let factored =
+                self.room.cholesky(MatMut::from_column_major_slice_mut(&mut self.small, m, m), 0.0);
+            let repeats = |&i: &usize| self.small[i * m + i].powi(2) <= DEPENDENT * diagonal[i];
+            let last = factored.err();
+            let known = (0..last.unwrap_or(m)).filter(|i| !self.dependent.contains(i));
+            let Some(row) = known.into_iter().find(repeats).or(last) else { return };
+            self.dependent.push(row);
+            (0..m).for_each(|j| product[row.min(j) * m + row.max(j)] = 0.0);
+            product[row * m + row] = 1.0;
+            self.rows[row * n..(row + 1) * n].fill(0.0);
+            self.directions.iter_mut().skip(row * n).take(n).for_each(|slope| *slope = 0.0);
+            self.yields[row] = 0.0;
+            self.small.copy_from_slice(&product);
+        }
     }
 
     /// Factors the whole saddle-point matrix with pivoting.
@@ -289,6 +318,7 @@ impl Saddle {
             return;
         }
         c.iter_mut().zip(&self.scales).for_each(|(c, scale)| *c *= scale);
+        self.dependent.iter().for_each(|&row| c[row] = 0.0);
         let lower = MatRef::from_column_major_slice(&self.stiffness, n, n);
         let t = MatRef::from_column_major_slice(&self.rows, n, m);
         let small = MatRef::from_column_major_slice(&self.small, m, m);
@@ -335,10 +365,4 @@ fn multiply(triangle: MatRef<f64>, structure: BlockStructure, x: &mut Mat<f64>) 
         Par::Seq,
     );
     *x = product;
-}
-
-/// Overwrites the lower triangle of a positive definite matrix with its Cholesky factor.
-fn cholesky(matrix: &mut [f64], n: usize, room: &mut Room) -> Result<(), usize> {
-    let size = diagonal_size(matrix.iter().step_by(n + 1).copied());
-    room.cholesky(MatMut::from_column_major_slice_mut(matrix, n, n), size)
 }

@@ -3,7 +3,7 @@
 use carom_algebra::Saddle;
 
 #[test]
-fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
+fn meets_both_lines_of_the_system() {
     let n = 7;
     let m = 3;
     let entry = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i as f64 - j as f64).abs()) };
@@ -15,7 +15,7 @@ fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
     for r in 0..m {
         (0..n).for_each(|j| saddle.add_row(r, j, row(r, j)));
     }
-    saddle.factor().unwrap();
+    assert!(saddle.factor());
     let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
     let c = [0.3, -0.1, 0.7];
     let mut x = b.clone();
@@ -39,7 +39,7 @@ fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
         saddle.add_row(0, 2, 2.0);
         saddle.add(2, 2, push);
         saddle.augment(share);
-        assert_eq!(saddle.factor(), Ok(share > 0.0));
+        assert_eq!(saddle.factor(), share > 0.0);
         let mut x = b.clone();
         let mut multiplier = [0.5];
         saddle.solve(&mut x, &mut multiplier);
@@ -49,9 +49,51 @@ fn meets_both_lines_of_the_system_and_refuses_dependent_rows() {
             assert!((upper + along(i) * (push * x[2] + 2.0 * multiplier[0]) - b[i]).abs() < 1e-12);
         }
     }
-    saddle.begin(&stiffness, n, 2);
-    (0..2).for_each(|r| saddle.add_row(r, 0, 1.0));
-    assert!(saddle.factor().is_err());
+}
+
+/// A row at an angle to two others that is round-off is left out: the solution is that without it.
+/// At a larger angle it counts, also beside a row that is a million times longer.
+#[test]
+fn rows_that_depend_on_earlier_ones_are_left_out() {
+    let n = 5;
+    let entry = |i: usize, j: usize| if i == j { 4.0 } else { 1.0 / (1.0 + (i as f64 - j as f64).abs()) };
+    let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+    let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
+    let solved = |rows: &[[f64; 5]], skew: bool| {
+        let mut saddle = Saddle::default();
+        saddle.begin(&stiffness, n, rows.len());
+        if skew {
+            saddle.direct();
+        }
+        for (r, row) in rows.iter().enumerate() {
+            for (j, slope) in row.iter().enumerate() {
+                saddle.add_row(r, j, *slope);
+                if skew {
+                    saddle.add_direction(r, j, *slope + if j == 4 { 0.1 } else { 0.0 });
+                }
+            }
+        }
+        assert!(saddle.factor());
+        let mut x = b.clone();
+        let mut multipliers: Vec<f64> = rows.iter().map(|row| 0.1 * row[0]).collect();
+        saddle.solve(&mut x, &mut multipliers);
+        (x, multipliers)
+    };
+    let rows = [[1e6, 0.0, 2e6, 0.0, 0.0], [1.0, -1.0, 0.5, 0.0, 0.0], [0.0, 0.0, 0.3, 1.0, 0.0]];
+    for skew in [false, true] {
+        let (exact, of_others) = solved(&rows, skew);
+        for angle in [0.0, 1e-9] {
+            let sum =
+                [0, 1, 2, 3, 4].map(|j| 1e-6 * rows[0][j] + rows[1][j] + if j == 3 { angle } else { 0.0 });
+            let (x, multipliers) = solved(&[rows[0], rows[1], sum, rows[2]], skew);
+            assert!(x.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-12));
+            assert_eq!(multipliers[2], 0.0);
+            assert!((multipliers[3] - of_others[2]).abs() < 1e-12);
+        }
+        let near = [0, 1, 2, 3, 4].map(|j| rows[1][j] + if j == 3 { 1e-5 } else { 0.0 });
+        let (x, _) = solved(&[rows[0], rows[1], near], skew);
+        assert!(x[3].abs() < 1e-4, "{x:?}");
+    }
 }
 
 /// Forces along other directions, with S positive definite, only on the kernel, or not at all.
@@ -76,7 +118,7 @@ fn forces_may_act_along_other_directions() {
             (0..n).for_each(|j| saddle.add_direction(r, j, direction(r, j)));
         }
         saddle.augment(share);
-        saddle.factor().unwrap();
+        saddle.factor();
         let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
         let c = [0.3, -0.1];
         let mut x = b.clone();
@@ -137,7 +179,7 @@ fn rows_that_yield_have_the_solution_of_the_dense_matrix() {
                 saddle.yields(r, compliances[r]);
             }
             saddle.augment(share);
-            seen[usize::from(saddle.factor().unwrap())] += 1;
+            seen[usize::from(saddle.factor())] += 1;
             let b: Vec<f64> = (0..n).map(|i| i as f64 - 2.0).collect();
             let c = [0.3, -0.1, 0.7];
             let mut x = b.clone();
@@ -193,7 +235,7 @@ fn large_friction_is_singular_where_the_springs_of_a_node_say() {
             saddle.add_direction(r, 2 * node + 1, -coefficients[node]);
         }
         saddle.augment(10.0);
-        assert!(saddle.factor().unwrap());
+        assert!(saddle.factor());
         saddle.regularity().unwrap()
     };
     for coefficient in [0.0, 0.3, 2.9, 2.9999, 3.0001, 3.1, -5.0] {

@@ -128,7 +128,8 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                         return false;
                     }
                     Next::Concave(facet, xi) => {
-                        moves.changed |= pair.active;
+                        // A node that its pair has set free may have sunk into the other facet.
+                        moves.changed |= pair.active || enters(pair.node, facet, xi);
                         moves.held.take(pair.node, facet);
                         moves.concave.push(Pair::opened(pair.node, OnFacet { facet, xi }));
                         return true;

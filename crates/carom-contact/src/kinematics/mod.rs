@@ -134,8 +134,8 @@ pub trait Kinematics: Send + Sync {
         None
     }
 
-    /// Convex round parts of a rigid obstacle, which can lie between nodes; none of other primary
-    /// sides.
+    /// Convex round parts of a rigid obstacle and points of its sharp edges, which can lie between
+    /// nodes; none of other primary sides.
     fn tips(&self, _y: &[f64]) -> Vec<Tip> {
         Vec::new()
     }
@@ -228,14 +228,17 @@ fn zero(before: f64, now: f64) -> Option<f64> {
     (now < 0.0).then(|| if before > 0.0 { before / (before - now) } else { 0.0 })
 }
 
-/// Gives every node a pair, for primary sides whose gaps are cheap enough to track all nodes in
+/// Gives every node without one a pair, for primary sides whose gaps are cheap enough to track all nodes in
 /// every step.
 fn watch_every_node(nodes: usize, pairs: &mut Vec<Pair>) {
-    if pairs.len() == nodes {
-        return;
-    }
     let mut known = std::mem::take(pairs).into_iter().peekable();
     for node in 0..nodes {
-        pairs.push(known.next_if(|p| p.node == node).unwrap_or(Pair::open(node, 0, 0.0)));
+        let first = pairs.len();
+        while let Some(pair) = known.next_if(|pair| pair.node == node) {
+            pairs.push(pair);
+        }
+        if pairs.len() == first {
+            pairs.push(Pair::open(node, 0, 0.0));
+        }
     }
 }

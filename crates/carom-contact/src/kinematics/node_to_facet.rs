@@ -243,6 +243,12 @@ impl NodeToFacet {
                     let leaves = self.primary.faces_nothing(pair.facet, pair.xi, placed);
                     if leaves { Next::Leave } else { Next::Stay }
                 }
+                // Two springs at a blunt joint are too stiff, and the second begins with a depth.
+                Next::Concave(..)
+                    if self.single && self.is_blunt(pair.facet, u8::from(pair.xi > 0.0), placed.flat()) =>
+                {
+                    Next::Stay
+                }
                 next => next,
             }
         };
@@ -358,8 +364,7 @@ impl Kinematics for NodeToFacet {
         let before = self.places(before);
         let now = self.places(now);
         let starts = pairing.fresh;
-        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
-        let left = self.leave_joints(&mut pairing.pairs, now.flat());
+        let left = self.leave_joints(&mut pairing.pairs, starts, now.flat());
         let slid = self.slide(before, now, pairing, events)
             | self.take_joints(&mut pairing.pairs, &left, now.flat());
         if starts {
@@ -514,9 +519,7 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        // The row of a round part is made of that with one facet (`tip_to_facet.rs`).
-        let is_single = self.single || self.is_frozen() || !self.radii.is_empty();
-        if is_single || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        if self.single || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;

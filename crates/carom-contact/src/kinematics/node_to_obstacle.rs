@@ -19,6 +19,11 @@
 //! press. There a node belongs to the piece that is parallel to a facet of its body, also if it
 //! lies past the corner by less than the distance up to which the row of the corner is left to it
 //! (`tip_to_facet.rs`).
+//!
+//! At a concave corner of more than 30° a node has a pair with each piece behind which it lies, and
+//! with that one to the end of its contact: with one pair it would sink into the others.
+
+use std::collections::BTreeMap;
 
 use carom_algebra::Vector;
 
@@ -41,6 +46,8 @@ pub struct NodeToObstacle {
     dimension: usize,
     pub(super) shape: Obstacle,
     pub(super) carrier: Option<Carrier>,
+    /// Convex parts of the obstacle, in the coordinates of the shape.
+    pub(super) tips: Vec<Tip>,
     /// Length of the facets at each secondary node; empty if the nodes have no facets.
     lengths: Vec<f64>,
     /// Boundary of the body of the nodes, if it is known.
@@ -52,7 +59,9 @@ pub struct NodeToObstacle {
 impl NodeToObstacle {
     /// Contact of secondary nodes with an obstacle that is fixed in space.
     pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
-        Self { secondary, dimension, shape, carrier: None, lengths: Vec::new(), own: None, kept: Vec::new() }
+        let tips = shape.tips(f64::INFINITY);
+        let lengths = Vec::new();
+        Self { secondary, dimension, shape, carrier: None, tips, lengths, own: None, kept: Vec::new() }
     }
 
     /// Contact with an obstacle that moves with the nodes of a carrier.
@@ -62,10 +71,11 @@ impl NodeToObstacle {
     }
 
     /// Contact with the length of the facets at each secondary node, relative to which the depth of
-    /// a path through the obstacle is judged.
+    /// a path through the obstacle is judged, and with points of its sharp edges two to a facet.
     #[must_use]
     pub fn with_lengths(self, lengths: Vec<f64>) -> Self {
-        Self { lengths, ..self }
+        let tips = self.shape.tips(0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min));
+        Self { tips, lengths, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -87,7 +97,7 @@ impl NodeToObstacle {
     /// The piece of the obstacle that an inactive node faces: the closest one if the node is
     /// outside, that through which it entered if it is inside; searched from the last one.
     fn facing(&self, last: usize, before: Point, now: Point) -> usize {
-        let nearest = self.shape.nearest(now, Some(last));
+        let nearest = self.shape.facing(now, last);
         if self.shape.near(nearest, now).is_some_and(|near| near.gap >= 0.0) {
             return nearest;
         }
@@ -128,13 +138,87 @@ impl NodeToObstacle {
         if self.shape.pieces() == 1 {
             return 0;
         }
+        if pair.joint.is_some() {
+            return pair.facet;
+        }
         if pair.active {
             return self.shape.followed(pair.facet, at);
         }
-        let nearest = self.shape.nearest(at, Some(pair.facet));
+        let nearest = self.shape.facing(at, pair.facet);
         let is_inside = |piece: usize| self.shape.near(piece, at).is_some_and(|near| near.gap < 0.0);
         let faced = if is_inside(nearest) && is_inside(pair.facet) { pair.facet } else { nearest };
         self.pressed(pair.node, faced, local, y).unwrap_or(faced)
+    }
+
+    /// Whether a node still needs a pair, one of several in a concave corner.
+    fn is_held(&self, pair: &Pair, at: Point) -> bool {
+        let length = self.lengths.get(pair.node).copied().unwrap_or(0.0);
+        let is_near = |near: Near| near.gap <= NodeToFacet::NEAR_END * length;
+        pair.active || self.shape.near(pair.facet, at).is_some_and(is_near)
+    }
+
+    /// A pair as its node has moved, and whether anything but an inactive pair has changed; none if
+    /// it leaves one of several pieces.
+    fn slid(
+        &self,
+        mut pair: Pair,
+        before: Point,
+        local: &Local,
+        now: &[f64],
+        left: &mut BTreeMap<usize, usize>,
+        events: &mut Vec<PairEvent>,
+    ) -> (Option<Pair>, bool) {
+        let node = self.secondary[pair.node];
+        let at = local.at;
+        let is_one = pair.joint.is_none();
+        if !pair.active {
+            if !is_one {
+                return (Some(pair), false);
+            }
+            let facing = self.facing(pair.facet, before, at);
+            let facing = self.pressed(pair.node, facing, local, now).unwrap_or(facing);
+            let is_inside = self.shape.near(facing, at).is_some_and(|near| near.gap < 0.0);
+            let changed = facing != pair.facet && is_inside;
+            pair.facet = facing;
+            return (Some(pair), changed);
+        }
+        pair.facet = self.shape.followed(pair.facet, at);
+        match self.shape.at_corner(pair.facet, at) {
+            AtCorner::Goes(next) if left.get(&pair.node) != Some(&next) => {
+                events.push(PairEvent::HandOver { node, from: pair.facet, to: next });
+                left.insert(pair.node, pair.facet);
+                pair.facet = next;
+                (Some(pair), true)
+            }
+            AtCorner::Leaves => {
+                let nearest = self.shape.facing(at, pair.facet);
+                if let Some(pressed) = self.pressed(pair.node, nearest, local, now).filter(|_| is_one) {
+                    let changed = pressed != pair.facet;
+                    pair.facet = pressed;
+                    return (Some(pair), changed);
+                }
+                events.push(PairEvent::SlidOff { node, facet: pair.facet });
+                (is_one.then(|| Pair::open(pair.node, nearest, 0.0)), true)
+            }
+            AtCorner::Goes(_) | AtCorner::Stays => (Some(pair), false),
+        }
+    }
+
+    /// New pairs of a node with pieces at concave corners of those of its pairs, behind which it
+    /// lies, too, and which turn by more than 30° from each.
+    fn walls(&self, held: &[Pair], at: Point) -> Vec<Pair> {
+        let mut walls: Vec<Pair> = Vec::new();
+        let normal = |piece: usize| self.shape.near(piece, at).map_or([0.0; 3], |near| near.normal);
+        let is_inside = |piece: usize| self.shape.near(piece, at).is_some_and(|near| near.gap < 0.0);
+        for pair in held.iter().filter(|pair| pair.active || is_inside(pair.facet)) {
+            for wall in self.shape.walls(pair.facet, at) {
+                let turns = |other: &Pair| dot(normal(other.facet), normal(wall)) < CORNER_COSINE;
+                if held.iter().chain(&walls).all(turns) {
+                    walls.push(Pair::open(pair.node, wall, 0.0));
+                }
+            }
+        }
+        walls
     }
 
     /// The tangents of a pair: two in space, one in the plane.
@@ -210,7 +294,7 @@ impl Kinematics for NodeToObstacle {
             let moved = self.carrier.as_ref().map(|carrier| carrier.placed(tip.center, y, self.dimension));
             Tip { center: moved.unwrap_or(tip.center), ..tip }
         };
-        self.shape.tips().into_iter().map(placed).collect()
+        self.tips.iter().copied().map(placed).collect()
     }
 
     fn keep(&mut self, depths: &[f64]) {
@@ -233,40 +317,25 @@ impl Kinematics for NodeToObstacle {
             return false;
         }
         let Pairing { pairs, left, .. } = pairing;
+        let known = std::mem::take(pairs);
         let mut changed = false;
-        for pair in pairs {
-            let node = self.secondary[pair.node];
-            let local = self.local(node, now);
-            let at = local.at;
-            if !pair.active {
-                let facing = self.facing(pair.facet, self.local(node, before).at, at);
-                let facing = self.pressed(pair.node, facing, &local, now).unwrap_or(facing);
-                let is_inside = self.shape.near(facing, at).is_some_and(|near| near.gap < 0.0);
-                changed |= facing != pair.facet && is_inside;
-                pair.facet = facing;
-                continue;
+        for of_node in known.chunk_by(|a, b| a.node == b.node) {
+            let node = self.secondary[of_node[0].node];
+            let [from, local] = [before, now].map(|y| self.local(node, y));
+            let first = pairs.len();
+            for &pair in of_node.iter().filter(|pair| of_node.len() == 1 || self.is_held(pair, local.at)) {
+                let (pair, moved) = self.slid(pair, from.at, &local, now, left, events);
+                pairs.extend(pair);
+                changed |= moved;
             }
-            pair.facet = self.shape.followed(pair.facet, at);
-            match self.shape.at_corner(pair.facet, at) {
-                AtCorner::Goes(next) if left.get(&pair.node) != Some(&next) => {
-                    events.push(PairEvent::HandOver { node, from: pair.facet, to: next });
-                    left.insert(pair.node, pair.facet);
-                    pair.facet = next;
-                    changed = true;
-                }
-                AtCorner::Leaves => {
-                    let nearest = self.shape.nearest(at, Some(pair.facet));
-                    if let Some(pressed) = self.pressed(pair.node, nearest, &local, now) {
-                        changed |= pressed != pair.facet;
-                        pair.facet = pressed;
-                        continue;
-                    }
-                    events.push(PairEvent::SlidOff { node, facet: pair.facet });
-                    *pair = Pair::open(pair.node, nearest, 0.0);
-                    changed = true;
-                }
-                AtCorner::Goes(_) | AtCorner::Stays => {}
+            if pairs.len() == first {
+                pairs.push(Pair::open(of_node[0].node, self.shape.facing(local.at, of_node[0].facet), 0.0));
             }
+            let walls = self.walls(&pairs[first..], local.at);
+            changed |= !walls.is_empty();
+            pairs.extend(walls);
+            let corner = (pairs.len() > first + 1).then_some(0);
+            pairs[first..].iter_mut().for_each(|pair| pair.joint = corner);
         }
         changed
     }

@@ -21,9 +21,11 @@
 //! circle has no unique point closest to its centre. A narrow one passes between the nodes, or
 //! slides over them as over the teeth of a comb. A part has a row where r < h, so that contact is
 //! hardly wider than a facet; elsewhere h²/8r ≤ h/8. Where it meets a node, it is left to that node
-//! if the rows of both would be the same.
+//! if the rows of both would be the same. Over a joint of facets its row is the mean of theirs, as
+//! that of a node (`joint.rs`), but with friction: the slip is that on one facet.
 
 use super::carrier::{Carrier, Local};
+use super::joint::OnFacets;
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::{Point, Tip, dot};
@@ -71,13 +73,15 @@ pub struct TipToFacet {
     centers: NodeToFacet,
     /// Whether a part is left to a node that it meets.
     leaves: bool,
+    /// Whether a part over a joint has one facet.
+    single: bool,
 }
 
 impl TipToFacet {
     /// Contact of the convex parts of an obstacle with a side; `reference`: the reference
     /// positions, flat over all nodes.
     pub fn new(obstacle: &NodeToObstacle, side: Surface, reference: &[f64]) -> Self {
-        let tips = obstacle.shape.tips();
+        let tips = obstacle.tips.clone();
         let nodes = reference.len() / 2;
         let nearest = |tip: &Tip| {
             let square =
@@ -90,7 +94,16 @@ impl TipToFacet {
         let numbers = (nodes..nodes + tips.len()).collect();
         let centers = NodeToFacet::new(numbers, side.clone(), Detection::ClosestPoint)
             .with_radii(tips.iter().map(|tip| tip.radius).collect());
-        Self { tips, carrier: obstacle.carrier.clone(), nodes, names, side, centers, leaves: true }
+        Self {
+            tips,
+            carrier: obstacle.carrier.clone(),
+            nodes,
+            names,
+            side,
+            centers,
+            leaves: true,
+            single: false,
+        }
     }
 
     /// Contact by springs, whose rows may depend on each other: no part is left to a node, after
@@ -98,6 +111,12 @@ impl TipToFacet {
     #[must_use]
     pub fn with_springs(self) -> Self {
         Self { leaves: false, ..self }
+    }
+
+    /// Contact in which a part over a joint has a pair with one facet.
+    #[must_use]
+    pub fn with_single_facets(self) -> Self {
+        Self { single: true, ..self }
     }
 
     /// Positions of the nodes, then of the centres.
@@ -261,6 +280,7 @@ impl Kinematics for TipToFacet {
     ) -> bool {
         let [before, now] = [before, now].map(|y| self.with_centers(y));
         let changed = self.named(events, |events| self.centers.search(&before, &now, pairing, events));
+        pairing.pairs.iter_mut().filter(|_| self.single).for_each(|pair| pair.joint = None);
         let known = pairing.pairs.len();
         let mut beside = Vec::new();
         pairing.pairs.iter().for_each(|pair| self.beside(pair, &now, &pairing.pairs, &mut beside));
@@ -305,10 +325,18 @@ impl Kinematics for TipToFacet {
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let count = self.side.nodes_of(pair.facet).len();
+        let all = self.with_centers(y);
+        let facets = self.centers.parts(pair, &all).map(|part| part.facet);
+        let mut nodes: Vec<usize> = Vec::new();
+        for &node in facets.flat_map(|facet| self.side.nodes_of(facet)) {
+            if !nodes.contains(&node) {
+                nodes.push(node);
+            }
+        }
+        let count = nodes.len();
         let own = 2 * (1 + count);
         let mut of_center = vec![0.0; own * own];
-        self.centers.curvature_into(pair, &self.with_centers(y), &mut of_center);
+        self.centers.curvature_into(pair, &all, &mut of_center);
         // Every node moves one of the nodes of the gap, with a weight: that of the facet or the
         // centre.
         let facet = (1..=count).map(|node| (node, 1.0));

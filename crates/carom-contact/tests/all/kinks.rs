@@ -51,12 +51,15 @@ fn a_node_that_goes_to_and_fro_in_a_dent_has_a_pair_with_either_facet() {
     let at = |node: [f64; 2]| [&notch[..], &[node]].concat().into_flattened();
     let before = at([0.01, 0.1]);
     let mut pairing = Pairing::default();
+    let mut changed = false;
     for node in [[0.05, -0.02], [-0.05, -0.02], [0.05, -0.02]] {
         // Each pair follows its closest point before the search, as in an iteration.
         let mut rows = Rows::new(2);
         pairing.pairs.iter_mut().for_each(|pair| contact.measure(pair, &at(node), &mut rows).unwrap());
-        contact.search(&before, &at(node), &mut pairing, &mut Vec::new());
+        changed = contact.search(&before, &at(node), &mut pairing, &mut Vec::new());
     }
+    // The node is inside the facet of the new pair.
+    assert!(changed);
     let facets: Vec<usize> = pairing.pairs.iter().map(|pair| pair.facet).collect();
     assert!(facets == [0, 1] || facets == [1, 0], "{facets:?}");
     // At the bottom both gaps are closed.

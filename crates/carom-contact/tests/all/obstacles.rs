@@ -198,3 +198,45 @@ fn a_path_through_an_obstacle_is_found_with_its_depth() {
     assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 2.0, 1.0, 4.0], 0.01).is_some());
     assert!(moving.passed(&[1.0, 2.0, 1.0, 1.0], &[1.0, 5.0, 1.0, 4.0], 0.01).is_none());
 }
+
+/// Facets and gaps of the pairs of a node after a motion, with the first pair given.
+fn found(contact: &NodeToObstacle, pairing: &mut Pairing, before: [f64; 2], now: [f64; 2]) -> Vec<f64> {
+    contact.search(&before, &now, pairing, &mut Vec::new());
+    let mut rows = Rows::new(2);
+    pairing.pairs.iter_mut().for_each(|pair| contact.measure(pair, &now, &mut rows).unwrap());
+    rows.iter().map(|row| row.gap).collect()
+}
+
+#[test]
+fn a_node_behind_both_sides_of_a_concave_corner_has_a_pair_with_either() {
+    let channel = polyline(&[[2.0, 4.0], [2.0, 0.0], [-2.0, 0.0], [-2.0, 4.0]], 0.0);
+    let vee = polyline(&[[4.0, 4.0], [0.0, 0.0], [-4.0, 4.0]], 0.0);
+    let depth = 0.02 * 0.5_f64.sqrt();
+    let scenes = [
+        (&channel, [2.0, 0.1], [2.02, -0.01], [-0.02, -0.01]),
+        (&channel, [1.9, 0.0], [2.02, -0.01], [-0.02, -0.01]),
+        (&channel, [-2.0, 0.1], [-2.02, -0.01], [-0.02, -0.01]),
+        (&vee, [0.0, 0.1], [0.0, -0.02], [-depth, -depth]),
+    ];
+    for (contact, before, now, gaps) in scenes {
+        let mut pairing = Pairing::default();
+        let mut found = found(contact, &mut pairing, before, now);
+        found.sort_by(f64::total_cmp);
+        assert!(found.len() == 2 && (0..2).all(|i| (found[i] - gaps[i]).abs() < 1e-15), "{found:?}");
+        assert!(pairing.pairs.iter().all(|pair| !pair.active));
+    }
+    // It slides up the wall, then along the floor, and keeps the pair there.
+    for (away, facet) in [([2.0, 1.0], 0), ([1.0, 0.0], 2)] {
+        let mut pairing = Pairing::default();
+        found(&channel, &mut pairing, [2.0, 0.1], [2.02, -0.01]);
+        pairing.pairs.iter_mut().for_each(|pair| pair.active = pair.facet == facet);
+        let gaps = found(&channel, &mut pairing, [2.0, 0.0], away);
+        assert!(gaps == [0.0] && pairing.pairs[0].facet == facet, "{gaps:?} {:?}", pairing.pairs);
+    }
+    // Above the wall, past its other end, the floor of the next step.
+    let steps = polyline(&[[8.0, 0.5], [2.0, 0.5], [2.0, 0.0], [-2.0, 0.0]], 0.0);
+    for (now, count) in [([3.0, 0.49], 1), ([2.01, 0.2], 1), ([2.01, -0.01], 2), ([1.0, -0.01], 1)] {
+        let mut pairing = Pairing::default();
+        assert_eq!(found(&steps, &mut pairing, [1.9, 0.6], now).len(), count, "{now:?}");
+    }
+}

@@ -216,9 +216,38 @@ fn a_node_in_contact_goes_across_flat_and_blunt_edges_and_off_sharp_ones() {
     let (gap, normal) = measured(&ball, &mut pair.clone(), &away);
     assert!((gap - (length - 1.0)).abs() < 5e-3, "{gap}");
     assert!((0..3).all(|i| (normal[i] - away[i] / length).abs() < 0.1), "{normal:?}");
-    // In a groove the deeper wall holds it.
+    // In a groove both walls hold it.
     let room = faceted(cuboid([2.0, 2.0, 1.0]).placed(1.0, true));
     let floor = searched(&room, Pair::open(0, 0, 0.0), [1.0, 0.3, 0.1], [1.0, 0.3, -0.01]).0.facet;
-    let (pair, _) = searched(&room, active(floor), [1.0, 0.1, 0.0], [1.0, -0.1, 0.0]);
-    close(measured(&room, &mut pair.clone(), &[1.0, -0.1, 0.0]).0, -0.1);
+    let mut pairing = Pairing::new(vec![active(floor)]);
+    room.search(&[1.0, 0.1, 0.0], &[1.0, -0.1, 0.0], &mut pairing, &mut Vec::new());
+    let gap = |pair: &Pair| measured(&room, &mut pair.clone(), &[1.0, -0.1, 0.0]).0;
+    let gaps: Vec<f64> = pairing.pairs.iter().map(gap).collect();
+    assert!(gaps.len() == 2 && gaps[0] == 0.0, "{gaps:?}");
+    close(gaps[1], -0.1);
+}
+
+#[test]
+fn a_node_behind_several_faces_of_a_concave_corner_has_a_pair_with_each() {
+    let room = faceted(cuboid([2.0, 2.0, 2.0]).placed(1.0, true));
+    for turn in 0..3 {
+        let scenes = [
+            ([0.1, 0.1, 0.1], [-0.01, -0.02, -0.03], &[-0.03, -0.02, -0.01][..]),
+            ([0.1, 0.1, 0.7], [-0.01, -0.02, 0.7], &[-0.02, -0.01]),
+            ([0.1, 0.1, 0.7], [0.01, -0.02, 0.7], &[-0.02]),
+            ([0.3, 0.1, 0.3], [0.3, -0.02, 0.3], &[-0.02]),
+        ];
+        for (before, now, gaps) in scenes {
+            let [before, now] = [before, now].map(|x| [0, 1, 2].map(|i| x[(i + turn) % 3]));
+            let mut pairing = Pairing::default();
+            room.search(&before, &now, &mut pairing, &mut Vec::new());
+            let mut rows = Rows::new(3);
+            pairing.pairs.iter_mut().for_each(|pair| room.measure(pair, &now, &mut rows).unwrap());
+            let mut found: Vec<f64> = rows.iter().map(|row| row.gap).collect();
+            found.sort_by(f64::total_cmp);
+            let agrees =
+                found.len() == gaps.len() && found.iter().zip(gaps).all(|(a, b)| (a - b).abs() < 1e-15);
+            assert!(agrees, "{turn}: {found:?} {gaps:?}");
+        }
+    }
 }

@@ -76,6 +76,53 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
+/// In a dent whose facets turn by less than 3° a circle over the joint meets both: its gap is the
+/// mean, symmetric where they are, with derivatives that are those of differences.
+#[test]
+fn over_a_joint_the_row_is_the_mean_of_those_of_its_facets() {
+    let side = Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2]], &[1.0; 2]);
+    let circle = Obstacle::circle(&[0.0, 0.16], 0.15, false);
+    let carrier = Carrier { nodes: vec![3], origin: [0.0, 0.16, 0.0], length: 1.0 };
+    let obstacle = NodeToObstacle::new(vec![0, 1, 2], 2, circle).carried_by(carrier);
+    let y = [1.0, 0.02, 0.0, 0.0, -1.0, 0.02, 0.0, 0.16];
+    let contact = TipToFacet::new(&obstacle, side.clone(), &y);
+    let single = TipToFacet::new(&obstacle, side, &y).with_single_facets();
+    let measured = |y: &[f64]| {
+        let mut pair = Pair { active: true, joint: Some(1), ..Pair::open(0, 0, 1.0) };
+        let mut rows = Rows::new(2);
+        contact.measure(&mut pair, y, &mut rows).unwrap();
+        let mut gradient = vec![0.0; y.len()];
+        rows.row(0).add_to(1.0, &mut gradient);
+        // The order of the second derivative is that of the row.
+        let order: Vec<usize> = rows.row(0).nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
+        (pair, rows.row(0).gap, gradient, order)
+    };
+    let (pair, gap, gradient, order) = measured(&y);
+    assert!((gap - (0.16 / (1.0_f64 + 0.02 * 0.02).sqrt() - 0.15)).abs() < 1e-15, "{gap}");
+    assert!(gradient[6].abs() < 1e-16 && gradient[7] > 0.99, "{gradient:?}");
+    assert!(jacobian_error(&y, 1e-5, |y| vec![measured(y).1], &gradient) < 1e-9);
+    let mut matrix = vec![0.0; 64];
+    contact.curvature_into(&pair, &y, &mut matrix);
+    let ordered = |y: &[f64]| -> Vec<f64> {
+        let gradient = measured(y).2;
+        order.iter().map(|&dof| gradient[dof]).collect()
+    };
+    let permuted: Vec<f64> = (0..64)
+        .map(|k| {
+            let column = order.iter().position(|&dof| dof == k % 8).unwrap();
+            matrix[k / 8 * 8 + column]
+        })
+        .collect();
+    let error = jacobian_error(&y, 1e-5, ordered, &permuted);
+    assert!(error < 1e-8, "{error:e}");
+    // At the start of a solve the pair is on the joint, but where each has one facet.
+    for (contact, joint) in [(contact, Some(1)), (single, None)] {
+        let mut pairing = Pairing::new(vec![Pair { joint: None, ..pair }]);
+        contact.search(&y, &y, &mut pairing, &mut Vec::new());
+        assert_eq!(pairing.pairs[0].joint, joint);
+    }
+}
+
 #[test]
 fn forces_are_balanced_and_finite_rigid_motions_do_not_slip() {
     for (k, (contact, y)) in scenes().iter().enumerate().filter(|(k, _)| k % 3 == 2) {

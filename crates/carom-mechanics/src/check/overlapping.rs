@@ -14,4 +14,12 @@ pub enum Overlap {
         /// Index of the contact.
         contact: usize,
     },
+    /// A body and a convex part of the rigid obstacle of one of its contacts, such as a sharp edge,
+    /// that lies between nodes and that the contact does not hold.
+    Between {
+        /// Index of the body.
+        body: usize,
+        /// Index of the contact.
+        contact: usize,
+    },
 }

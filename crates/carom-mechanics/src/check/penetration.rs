@@ -9,7 +9,7 @@ use carom_contact::{InsideItself, Rows, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
-use crate::check::tips::{Pierced, Tip};
+use crate::check::tips::{Pierced, Tips};
 use crate::check::watched::{Way, edge_points, has_gaps, keeps, watched};
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
@@ -22,7 +22,7 @@ pub struct Penetration {
     /// Nodes at the kinks of each body that must not be entered.
     kinks: Vec<Vec<usize>>,
     pub(crate) ways: Vec<Way>,
-    tips: Vec<Tip>,
+    tips: Vec<Tips>,
     /// Positions to which the clearances refer.
     y: Vec<f64>,
     /// Bodies whose skins have their positions of this step.
@@ -69,7 +69,7 @@ pub(crate) enum What {
     Node,
     /// A point of an edge that begins with it.
     Edge,
-    /// A round part of an obstacle, near it.
+    /// A convex part of an obstacle, near it.
     Obstacle,
 }
 
@@ -121,14 +121,14 @@ impl Penetration {
                 ways.push(Way::new(model, Some(k), body, nodes));
             }
         }
-        Self::new(model, ways, Tip::all(model))
+        Self::new(model, ways, Tips::all(model))
     }
 
-    pub(crate) fn new(model: &Model, ways: Vec<Way>, tips: Vec<Tip>) -> Self {
+    pub(crate) fn new(model: &Model, ways: Vec<Way>, tips: Vec<Tips>) -> Self {
         let skin = |body: usize| {
             let part = &model.parts[body];
             let mut of_body = ways.iter().filter(|way| way.body == body).peekable();
-            if of_body.peek().is_none() && tips.iter().all(|tip| tip.part != body) {
+            if of_body.peek().is_none() && tips.iter().all(|tips| tips.part != body) {
                 return None;
             }
             let folds = of_body.any(|way| way.itself.is_some());
@@ -179,9 +179,9 @@ impl Penetration {
             }
         }
         for (contact, part, pierced) in self.pierced(model, &state.y) {
-            let Pierced { node, place, depth, counts, limit } = pierced;
+            let Pierced { node, place, depth, counts, limit, .. } = pierced;
             if depth > counts || state.closed(contact, place).is_some() {
-                deepest.add(depth, counts == 0.0);
+                deepest.add(depth, pierced.is_held && counts == 0.0);
             }
             let inside = Inside { node, what: What::Obstacle, depth, limit };
             beyond = beyond.or((depth > limit).then_some((contact, part, inside)));
@@ -215,14 +215,21 @@ impl Penetration {
         ))
     }
 
-    /// The round parts of rigid obstacles that may have met a body, with contact and body.
-    fn pierced(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize, Pierced)> {
+    /// The convex parts of rigid obstacles that may have met a body, with contact and body.
+    pub(crate) fn pierced(&mut self, model: &Model, y: &[f64]) -> Vec<(usize, usize, Pierced)> {
         let Self { skins, tips, current, .. } = self;
-        let of_tip = |tip: &mut Tip| {
-            let found = tip.pierced(model, skins[tip.part].as_mut()?, &mut current[tip.part], y)?;
-            Some((tip.contact, tip.part, found))
-        };
-        tips.iter_mut().filter_map(of_tip).collect()
+        let mut found = Vec::new();
+        for tips in tips {
+            let Some(skin) = skins[tips.part].as_mut() else { continue };
+            let pierced = tips.pierced(model, skin, &mut current[tips.part], y).into_iter();
+            found.extend(pierced.map(|pierced| (tips.contact, tips.part, pierced)));
+        }
+        found
+    }
+
+    /// Whether convex parts of the obstacle of a contact are measured.
+    pub(crate) fn has_tips(&self, contact: usize) -> bool {
+        self.tips.iter().any(|tips| tips.contact == contact)
     }
 
     /// Subtracts the motion since the last call from the clearances.
@@ -240,9 +247,9 @@ impl Penetration {
             }
         }
         if self.y.len() == y.len() {
-            for tip in &mut self.tips {
-                let amplification = self.skins[tip.part].as_ref().map_or(1.0, BodySkin::amplification);
-                tip.approach(|node| square(&self.y, y, model.dimension, node), amplification);
+            for tips in &mut self.tips {
+                let amplification = self.skins[tips.part].as_ref().map_or(1.0, BodySkin::amplification);
+                tips.approach(|node| square(&self.y, y, model.dimension, node), amplification);
             }
         }
         self.y.clear();
@@ -376,7 +383,8 @@ impl Penetration {
             found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
         }
         // Chords of facets lie in what their nodes touch.
-        let is_too_deep = |p: &Pierced| p.depth > p.limit.min(p.counts + limit);
+        let is_too_deep =
+            |p: &Pierced| p.depth > if p.is_held { p.limit.min(p.counts + limit) } else { p.limit };
         let pierced = self.pierced(model, y).into_iter().filter(|(.., p)| is_too_deep(p));
         found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact))

@@ -1,6 +1,7 @@
 //! Contact that nobody has declared: bodies that overlap, or lie in a rigid obstacle, with nodes
 //! that no contact between them covers, and bodies that cross themselves. Nothing prevents it, and
-//! no force comes of it: it is warned of.
+//! no force comes of it: it is warned of. So are sharp edges and narrow spheres of rigid obstacles
+//! in space that lie between the nodes of a body.
 //!
 //! Where a boundary touches itself, its chords cross by round-off. A body crosses itself where the
 //! node deepest inside it is as deep as other bodies may not be, at a place that no contact of the
@@ -13,6 +14,7 @@ use carom_contact::InsideItself;
 use crate::check::overlapping::Overlap;
 use crate::check::penetration::Penetration;
 use crate::check::skins::{BodySkin, length, part_of, skin, skin_facets};
+use crate::check::tips::Tips;
 use crate::check::valid_cells::Checked;
 use crate::check::watched::{Watched, Way, has_gaps, kept_depths, lengths};
 use crate::model::{BodyInstance, Contact, Model};
@@ -84,7 +86,8 @@ impl Undeclared {
                 }
             }
         }
-        Self { between: Penetration::new(model, ways, Vec::new()), obstacles: beside(model), own: None }
+        let tips = Tips::all(model).into_iter().filter(|_| model.dimension == 3).collect();
+        Self { between: Penetration::new(model, ways, tips), obstacles: beside(model), own: None }
     }
 
     /// Whether anything is watched that could overlap so.
@@ -97,6 +100,7 @@ impl Undeclared {
             Overlap::Obstacle { contact, .. } => {
                 self.obstacles.iter().any(|beside| beside.contact == contact)
             }
+            Overlap::Between { contact, .. } => self.between.has_tips(contact),
         }
     }
 
@@ -126,6 +130,11 @@ impl Undeclared {
             };
             if nodes.iter().any(is_inside) {
                 found.push(Overlap::Obstacle { body: *body, contact: *contact });
+            }
+        }
+        for (contact, body, pierced) in self.between.pierced(model, y) {
+            if pierced.depth > pierced.counts.max(UNDECLARED * pierced.length) {
+                found.push(Overlap::Between { body, contact });
             }
         }
         found.sort_unstable();

@@ -182,7 +182,7 @@ impl Direct {
         if !self.of_mass {
             saddle.augment(STIFFENING);
         }
-        Ok(saddle.factor()? && (self.of_mass || self.positive))
+        Ok(saddle.factor() && (self.of_mass || self.positive))
     }
 
     /// Overwrites a right-hand side over unknowns and rows with the factor's solution.

@@ -131,7 +131,9 @@ impl Bodies<'_> {
         }
         let tips = TipToFacet::new(&obstacle, surface, self.reference);
         let springs = self.case.contacts[k].enforcement == case::Enforcement::Penalty;
+        let rubs = self.case.contacts[k].friction.exists();
         let tips = if springs { tips.with_springs() } else { tips };
+        let tips = if springs || rubs { tips.with_single_facets() } else { tips };
         Box::new(WithTips::new(obstacle, tips))
     }
 

@@ -108,6 +108,14 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             );
             Event::new(step, *time, "overlap", message).with("place", place).with("obstacle", name)
         }
+        LogEvent::Overlap { time, overlap: Undeclared::Between { body, contact } } => {
+            let place = format!("body \"{}\"", model.parts[*body].name);
+            let name = contact_name(*contact);
+            let message = format!(
+                "a sharp edge or a narrow sphere of the obstacle of contact \"{name}\" lies between nodes of {place}"
+            );
+            Event::new(step, *time, "between-nodes", message).with("place", place).with("contact", name)
+        }
         LogEvent::Ambiguous { time, regularity } => {
             let message = format!(
                 "friction so large that stick and slip are not unique: the matrix of the contacts has the smallest singular value {:.3e}, \

@@ -50,7 +50,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 22] = [
+pub const WARNINGS: [Entry; 23] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -155,6 +155,13 @@ pub const WARNINGS: [Entry; 22] = [
         why: "nothing keeps them apart: contact acts only between the sides that a [[contact]] names",
         advice: "a [[contact]] that names the sides that meet, or one with between = \"all\"; or ending the run before they meet",
         rule: Rule::Both(courses::undeclared_contact, record::undeclared_contact),
+    },
+    Entry {
+        id: "edge-between-nodes",
+        why: "in space a rigid obstacle holds nodes alone: between them its sharp edges, corners and narrow spheres \
+              enter the body, and the contact is too soft or absent there",
+        advice: "nodes of the body along the edge, on the obstacle's side of it, or a finer mesh there; or a stiff body in place of the obstacle, whose edges and corners are held",
+        rule: Rule::Record(record::edge_between_nodes),
     },
     Entry {
         id: "large-rotation",

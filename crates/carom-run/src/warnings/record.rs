@@ -52,6 +52,20 @@ pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     found
 }
 
+/// Bodies between whose nodes an edge or a narrow sphere of a rigid obstacle lay.
+pub(super) fn edge_between_nodes(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let entered = events(run, "between-nodes").filter_map(|event| {
+        let text = |key: &str| event.data.get(key)?.as_str();
+        let what = format!(
+            "a sharp edge or a narrow sphere of the obstacle lies in {} by more than 1 % of a facet from t = {} on",
+            text("place")?,
+            short(event.time)
+        );
+        Some(Found::of_contact(text("contact")?, what))
+    });
+    entered.collect()
+}
+
 /// Bodies that overlapped, or lay in a rigid obstacle, where no contact between them acts.
 pub(super) fn undeclared_contact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let overlaps = events(run, "overlap");

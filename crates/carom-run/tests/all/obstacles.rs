@@ -368,3 +368,64 @@ fn a_corner_at_a_node_presses_like_one_beside_it() {
         }
     }
 }
+
+/// A cube thrown into a corner, parallel to its walls, in the plane and in space.
+const THROWN: [&str; 2] = [
+    r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.5, young = 2000.0, poisson = 0.25 }]
+body = [{ name = "block", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0.01, 0.01], max = [0.26, 0.26], cells = [2, 2] }, velocity = [-0.6, -0.6] }]
+contact = []
+time = { step = 1e-3, end = 0.03, scheme = { kind = "backward-euler" } }
+"#,
+    r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1.5, young = 2000.0, poisson = 0.25 }]
+body = [{ name = "block", material = "m", element = "Hex8", mesh = { shape = "box", min = [0.01, 0.01, 0.01], max = [0.26, 0.26, 0.26], cells = [2, 2, 2] }, velocity = [-0.6, -0.6, -0.6] }]
+contact = []
+time = { step = 1e-3, end = 0.03, scheme = { kind = "backward-euler" } }
+"#,
+];
+
+/// The inside of a corner of three squares, each of two triangles.
+fn inner_corner() -> String {
+    let vertex = |p: &[u8; 3]| format!("vertex {} {} {}\n", p[0], p[1], p[2]);
+    let square = |a: [u8; 3], b: [u8; 3]| {
+        let across = [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        [[[0; 3], a, across], [[0; 3], across, b]]
+    };
+    let [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    let triangles = [square(x, y), square(y, z), square(z, x)].concat();
+    let facet = |corners: &[[u8; 3]; 3]| {
+        let vertices: String = corners.iter().map(vertex).collect();
+        format!("facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n")
+    };
+    format!("solid corner\n{}endsolid corner\n", triangles.iter().map(facet).collect::<String>())
+}
+
+#[test]
+fn a_concave_corner_is_that_of_planes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("corner.stl");
+    std::fs::write(&path, inner_corner()).unwrap();
+    let contact = |name: usize, primary: &str| {
+        format!("{{ name = \"c{name}\", secondary = \"block.skin\", primary = {{ {primary} }} }}")
+    };
+    let walls = [
+        "polyline = { points = [[2.0, 0.0], [0.0, 0.0], [0.0, 2.0]] }".to_owned(),
+        format!("surface = {{ file = \"{}\" }}", path.display()),
+    ];
+    for (text, wall) in THROWN.iter().zip(walls) {
+        let dimension = if wall.starts_with("surface") { 3 } else { 2 };
+        let plane = |axis: usize| {
+            let normal: Vec<f64> = (0..dimension).map(|i| if i == axis { 1.0 } else { 0.0 }).collect();
+            contact(axis, &format!("plane = {{ point = {:?}, normal = {normal:?} }}", vec![0.0; dimension]))
+        };
+        let planes: Vec<String> = (0..dimension).map(plane).collect();
+        let [together, apart] = [vec![contact(0, &wall)], planes]
+            .map(|contacts| run(text, &[], &format!("contact=[{}]", contacts.join(", "))).unwrap());
+        let [a, b] = [&together, &apart].map(|sim| &sim.state().y);
+        let most = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(most < 1e-12 && together.state().impulse()[1] > 0.01, "{dimension}: {most:e}");
+    }
+}

@@ -170,3 +170,46 @@ time = {{ end = 0.3, step = 0.01, scheme = {{ kind = "backward-euler" }} }}
     assert!(!crosses(&[]));
     assert!(crosses(&["contact=[]"]));
 }
+
+/// A cuboid on a rigid box of half its width: the edges of the box lie between nodes, a fortieth of
+/// a facet beside a line of them, or just past it.
+fn on_a_box(half_width: f64) -> String {
+    let corner = |k: usize| [0, 1, 2].map(|i| if k >> i & 1 == 1 { 1.0 } else { -1.0 });
+    let point = |k: usize| {
+        let [x, y, z] = corner(k);
+        format!("{} {} {}", half_width * x, -0.25 + 0.25 * y, z)
+    };
+    let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let facet = |nodes: [usize; 3]| {
+        let vertices: Vec<String> = nodes.iter().map(|&k| format!("vertex {}", point(k))).collect();
+        format!("facet normal 0 0 0\nouter loop\n{}\nendloop\nendfacet\n", vertices.join("\n"))
+    };
+    format!("solid box\n{}endsolid box\n", triangles.map(facet).collect::<String>())
+}
+
+#[test]
+fn an_edge_of_a_rigid_surface_between_nodes_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let surface = |half_width: f64| {
+        let path = folder.path().join(format!("box-{half_width}.stl"));
+        std::fs::write(&path, on_a_box(half_width)).unwrap();
+        format!(
+            "contact=[{{ name = \"c\", secondary = \"block.skin\", primary = {{ surface = {{ file = \"{}\" }} }} }}]",
+            path.display()
+        )
+    };
+    let case = r#"
+dimension = 3
+material = [{ name = "rubber", law = "neo-hookean", density = 1.5, young = 2000.0, poisson = 0.25 }]
+body = [{ name = "block", material = "rubber", element = "Hex8", mesh = { shape = "box", min = [-0.5, 0.0, -0.5], max = [0.5, 0.25, 0.5], cells = [4, 1, 4] } }]
+support = [{ name = "top", on = ["block.back"], fix = ["x", "z"], move = { y = "-0.005*t" } }]
+contact = []
+time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
+"#;
+    let given = |half_width: f64| recorded(case, &[&surface(half_width)]);
+    let id = "edge-between-nodes".to_owned();
+    assert!(given(0.2).contains(&id), "{:?}", given(0.2));
+    // At the nodes, and where nodes on either side hold the edge.
+    assert!(!given(0.25).contains(&id), "{:?}", given(0.25));
+}

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use carom_solid::{Bounds, Tree, Triangles};
 
 use super::corner::{AtCorner, CORNER_COSINE};
-use super::near::{Entry, Near, Point, around, cross, distance, dot, minus};
+use super::near::{Entry, Near, Point, Tip, around, cross, distance, dot, minus};
 use crate::kinematics::space::Feature;
 
 /// Negative barycentric coordinate, in absolute value, from which on a point lies beyond an edge of
@@ -106,6 +106,30 @@ impl Faceted {
         Self(Arc::new(Surface { triangles, normals, edges, edges_of, corners, tree }))
     }
 
+    /// Points of the sharp convex edges, their ends among them.
+    pub(crate) fn tips(&self, spacing: f64) -> Vec<Tip> {
+        let surface = &*self.0;
+        let points = surface.triangles.points();
+        let mut tips = Vec::new();
+        for (face, edge) in (0..surface.faces()).flat_map(|face| [0, 1, 2].map(|edge| (face, edge))) {
+            let is_sharp = surface.triangles.across(face, edge).is_some_and(|next| {
+                let turn = dot(surface.normals[face], surface.normals[next]);
+                face < next && turn < CORNER_COSINE && surface.is_convex(face, edge)
+            });
+            if !is_sharp {
+                continue;
+            }
+            let [a, b] = surface.triangles.edge(face, edge).map(|node| points[node]);
+            let pieces = (distance(a, b) / spacing).ceil().max(1.0);
+            tips.extend((0..=pieces as usize).map(|k| {
+                let share = k as f64 / pieces;
+                let center = std::array::from_fn(|i| a[i] + share * (b[i] - a[i]));
+                Tip { center, radius: 0.0, size: 0.0, normals: None }
+            }));
+        }
+        tips
+    }
+
     /// Number of pieces of the surface: faces, edges and vertices.
     pub(in super::super) fn pieces(&self) -> usize {
         self.0.normals.len()
@@ -162,14 +186,31 @@ impl Faceted {
         }
     }
 
+    /// The faces at the corners of a face that rise in front of it, behind which a point lies, and
+    /// which it is over or as near to as to the face.
+    pub(in super::super) fn walls(&self, face: usize, at: Point) -> Vec<usize> {
+        let surface = &*self.0;
+        let away = surface.closest(face, at).1;
+        let is_wall = |&wall: &usize| {
+            let is_near =
+                || surface.beyond(wall, at).is_none() || surface.closest(wall, at).1 <= (1.0 + BEYOND) * away;
+            let rises = || surface.rises(face, wall) && surface.rises(wall, face);
+            surface.height(wall, at) < 0.0 && is_near() && rises()
+        };
+        let around = surface.triangles.corners()[face].iter();
+        around.flat_map(|&node| surface.triangles.fan(face, node)).filter(is_wall).collect()
+    }
+
     /// The next piece of a node in contact with a face, which may lie beyond the edges of that
     /// face.
     pub(in super::super) fn at_corner(&self, face: usize, at: Point) -> AtCorner {
         let surface = &*self.0;
+        let is_blunt = |next: usize| dot(surface.normals[face], surface.normals[next]) >= CORNER_COSINE;
         for edge in 0..3 {
-            // In a groove the deeper wall constrains it.
+            // In a blunt groove the deeper wall constrains it; in a sharp one both do (`walls`).
             if let Some(next) = surface.triangles.across(face, edge)
                 && !surface.is_convex(face, edge)
+                && is_blunt(next)
                 && surface.height(next, at) < surface.height(face, at)
                 && surface.beyond(next, at).is_none()
             {
@@ -181,8 +222,11 @@ impl Faceted {
         while let Some(edge) = surface.beyond(here, at) {
             let Some(next) = surface.triangles.across(here, edge) else { return AtCorner::Leaves };
             let turn = dot(surface.normals[here], surface.normals[next]);
-            if turn < CORNER_COSINE && surface.is_convex(here, edge) {
-                return AtCorner::Leaves;
+            if turn < CORNER_COSINE {
+                if surface.is_convex(here, edge) {
+                    return AtCorner::Leaves;
+                }
+                break;
             }
             // Between the normals of two faces it stays on that from which it came.
             if let Some(known) = visited.iter().position(|&face| face == next) {
@@ -260,6 +304,13 @@ impl Surface {
         let ends = self.triangles.edge(face, edge);
         let apex = self.triangles.corners()[next].iter().find(|node| !ends.contains(node));
         apex.is_none_or(|&node| self.height(face, self.triangles.points()[node]) <= 0.0)
+    }
+
+    /// Whether the middle of `face` lies in front of the face `behind`.
+    fn rises(&self, behind: usize, face: usize) -> bool {
+        let points = self.triangles.points();
+        self.triangles.corners()[face].iter().map(|&node| self.height(behind, points[node])).sum::<f64>()
+            > 0.0
     }
 
     /// The edge of a face beyond which a point lies furthest, if any.

@@ -82,13 +82,15 @@ impl Obstacle {
         }
     }
 
-    /// The convex round parts of the obstacle, which can lie between the nodes of a body.
-    pub(crate) fn tips(&self) -> Vec<Tip> {
+    /// The convex round parts of the obstacle, which can lie between the nodes of a body; points of
+    /// sharp edges of a triangulated surface at most at the distance `spacing`.
+    pub(crate) fn tips(&self, spacing: f64) -> Vec<Tip> {
         match self {
             Self::Circle { center, radius, inside: false, .. } => {
                 vec![Tip { center: *center, radius: *radius, size: *radius, normals: None }]
             }
             Self::Polyline(line) => line.tips().collect(),
+            Self::Faceted(surface) => surface.tips(spacing),
             _ => Vec::new(),
         }
     }
@@ -100,6 +102,15 @@ impl Obstacle {
             Self::Polyline(line) => line.nearest(at),
             Self::Faceted(surface) => surface.nearest(at, from),
             _ => 0,
+        }
+    }
+
+    /// The piece that is closest to a point and has a normal for it: none has the vertex of a
+    /// concave corner.
+    pub(super) fn facing(&self, at: Point, from: usize) -> usize {
+        match self {
+            Self::Polyline(line) => line.with_normal(line.nearest(at), at),
+            _ => self.nearest(at, Some(from)),
         }
     }
 
@@ -130,6 +141,16 @@ impl Obstacle {
             Self::Polyline(line) => line.followed(piece, at),
             Self::Faceted(surface) => surface.followed(piece, at),
             _ => 0,
+        }
+    }
+
+    /// The flat pieces that rise in front of another one at a sharp concave corner, and behind
+    /// which a point lies, too.
+    pub(super) fn walls(&self, piece: usize, at: Point) -> Vec<usize> {
+        match self {
+            Self::Polyline(line) => line.walls(piece, at),
+            Self::Faceted(surface) => surface.walls(piece, at),
+            _ => Vec::new(),
         }
     }
 

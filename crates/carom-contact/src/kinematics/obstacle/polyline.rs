@@ -187,6 +187,16 @@ impl Polyline {
         facing.min_by(|a, b| order(a).0.total_cmp(&order(b).0).then(order(a).1.cmp(&order(b).1))).unwrap_or(0)
     }
 
+    /// The segment at a sharp concave corner behind which a point is deeper, for that corner; the
+    /// piece itself for others.
+    pub(in super::super) fn with_normal(&self, piece: usize, at: Point) -> usize {
+        if !self.is_notch(piece) {
+            return piece;
+        }
+        let beside = [false, true].into_iter().filter_map(|forward| self.neighbour(piece, forward));
+        beside.min_by(|a, b| self.gap(*a, at).total_cmp(&self.gap(*b, at))).unwrap_or(piece)
+    }
+
     /// The segments over or under which a point lies, to within a distance past their ends.
     pub(in super::super) fn over(&self, at: Point, past: f64) -> Vec<usize> {
         let is_over = |piece: &usize| match &self.pieces[*piece] {
@@ -229,6 +239,23 @@ impl Polyline {
         }
     }
 
+    /// The segments beside a segment at concave corners behind which a point lies, and not past
+    /// their other ends.
+    pub(in super::super) fn walls(&self, piece: usize, at: Point) -> Vec<usize> {
+        let wall = |forward: bool| {
+            let corner = self.neighbour(piece, forward).filter(|&corner| self.is_notch(corner))?;
+            let wall = self.neighbour(corner, forward)?;
+            let is_beside = self.faces(wall, at) || self.beyond(wall, at) == Some(corner);
+            (is_beside && self.gap(wall, at) < 0.0).then_some(wall)
+        };
+        [false, true].into_iter().filter_map(wall).collect()
+    }
+
+    /// Whether a piece is a sharp concave corner.
+    fn is_notch(&self, piece: usize) -> bool {
+        matches!(self.pieces[piece], Piece::Corner { radius: 0.0, side, .. } if side < 0.0)
+    }
+
     /// The piece of the polyline on which the gap of a node in contact is measured: the node slides
     /// through rounded corners, and past a sharp one on the line of its segment, since a vertex has
     /// no normal.
@@ -257,13 +284,13 @@ impl Polyline {
             let Piece::Corner { side, .. } = self.pieces[corner] else { continue };
             let Piece::Segment { tangent: other, .. } = self.pieces[next] else { continue };
             let past = self.beyond(piece, at) == Some(corner);
+            let blunt = dot(tangent, other) >= CORNER_COSINE;
             if side < 0.0 {
-                // In a concave corner the deeper wall constrains it.
-                if self.gap(next, at) < self.gap(piece, at) && self.faces(next, at) {
+                // In a dent the deeper wall constrains it; in a concave corner both do (`walls`).
+                if blunt && self.gap(next, at) < self.gap(piece, at) && self.faces(next, at) {
                     return AtCorner::Goes(next);
                 }
             } else if past {
-                let blunt = dot(tangent, other) >= CORNER_COSINE;
                 return match (blunt, self.beyond(next, at) == Some(corner)) {
                     (true, true) => AtCorner::Stays,
                     (true, false) => AtCorner::Goes(next),
