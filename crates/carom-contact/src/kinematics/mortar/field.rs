@@ -35,8 +35,13 @@ impl Mortar {
         let mut at_nodes: BTreeMap<usize, Vec<NodalPressure>> = BTreeMap::new();
         for facet in facets {
             let own = self.secondary.facet(facet);
-            let (ends, carriers) = faced[facet];
-            let [from, to] = ends.unwrap_or([-1.0, 1.0]);
+            let (Some([from, to]), carriers) = faced[facet] else {
+                for &node in own.nodes {
+                    let none = NodalPressure { node, actual: 0.0, nominal: 0.0 };
+                    at_nodes.entry(node).or_default().push(none);
+                }
+                continue;
+            };
             for (place, &node) in own.nodes.iter().enumerate() {
                 let xi = coordinate(own.nodes.len(), place).clamp(from, to);
                 let of = |number: usize| {
