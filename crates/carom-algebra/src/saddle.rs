@@ -12,13 +12,13 @@
 //! (1 + C/TᵀT)^−½.
 //!
 //! Both factors exist if S is positive definite and G has full rank; the matrix then has one
-//! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). The pivot
-//! of a row in TᵀT, over its diagonal, is the square of the sine of its angle to the earlier rows in
-//! the metric of S⁻¹. If it is round-off, the earlier rows say what that row says, and nothing
-//! determines its multiplier: it is left out, with the multiplier zero. If S is
-//! positive definite only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution
-//! and is positive definite everywhere (ibid., §3.5: the augmented Lagrangian). Otherwise (a
-//! buckling structure) the whole matrix is factored with pivoting (Bunch, Kaufman).
+//! negative eigenvalue per row of G (Benzi, Golub, Liesen, Acta Numerica 14 (2005), §3.4). The
+//! pivot of a row in TᵀT, over its diagonal, is the square of the sine of its angle to the earlier
+//! rows in the metric of S⁻¹. If it is round-off, the earlier rows say what that row says, and
+//! nothing determines its multiplier: it is left out, with the multiplier zero. If S is positive
+//! definite only on the kernel of G, S + Σ κ gᵀg with b + Σ κ c g has the same solution and is
+//! positive definite everywhere (ibid., §3.5: the augmented Lagrangian). Otherwise (a buckling
+//! structure) the whole matrix is factored with pivoting (Bunch, Kaufman).
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};

@@ -10,7 +10,6 @@
 //! Which pairs lie on a joint is decided at the start of a solve. One that has slid off it by the
 //! end goes on with the facet where it lies: over a hollow joint the mean would let it sink.
 
-use super::Kinematics;
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
 
@@ -19,7 +18,7 @@ use crate::rows::Rows;
 pub(super) const AT_JOINT: f64 = 1e-7;
 
 /// Contact of nodes with single facets, of which that with joints is made.
-pub(super) trait OnFacets: Kinematics {
+pub(super) trait OnFacets {
     /// Dimension of the positions.
     fn dimension(&self) -> usize;
 
@@ -54,24 +53,19 @@ pub(super) trait OnFacets: Kinematics {
     }
 
     /// Takes active pairs off joints where a facet's gap differs from the mean by more than
-    /// round-off in positions: the node has slid away. A new solve `starts` with all pairs off
-    /// joints. They go on with the facet over which the node lies, whichever that of the pair was:
-    /// mirror images have other ones. Returns the nodes that have slid away.
-    fn leave_joints(&self, pairs: &mut [Pair], starts: bool, y: &[f64]) -> Vec<usize> {
+    /// round-off in positions: the node has slid away. Returns their nodes.
+    fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> Vec<usize> {
         let mut left = Vec::new();
         let mut gaps = Rows::new(self.dimension());
-        for pair in pairs.iter_mut().filter(|pair| (pair.active || starts) && pair.joint.is_some()) {
+        for pair in pairs.iter_mut().filter(|pair| pair.active && pair.joint.is_some()) {
             gaps.clear();
-            let mut parts: Vec<Pair> = self.parts(pair, y).collect();
-            let is_measured = parts.iter_mut().all(|part| self.measure_one(part, y, &mut gaps).is_ok());
+            let is_measured =
+                self.parts(pair, y).all(|mut part| self.measure_one(&mut part, y, &mut gaps).is_ok());
             let mean = gaps.iter().map(|row| row.gap).sum::<f64>() / gaps.len() as f64;
             let apart = gaps.iter().map(|row| (row.gap - mean).abs()).fold(0.0, f64::max);
-            if starts || !is_measured || apart > AT_JOINT * self.size(pair.facet, y) {
-                let over = parts.iter().zip(gaps.iter()).filter(|(part, _)| self.is_on_facet(part));
-                let deepest = over.min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap)).map(|(part, _)| part);
-                let Pair { facet, xi, eta, .. } = *deepest.unwrap_or(&parts[0]);
-                *pair = Pair { facet, xi, eta, joint: None, ..*pair };
-                left.extend((!starts).then_some(pair.node));
+            if !is_measured || apart > AT_JOINT * self.size(pair.facet, y) {
+                pair.joint = None;
+                left.push(pair.node);
             }
         }
         left

@@ -228,8 +228,8 @@ fn zero(before: f64, now: f64) -> Option<f64> {
     (now < 0.0).then(|| if before > 0.0 { before / (before - now) } else { 0.0 })
 }
 
-/// Gives every node without one a pair, for primary sides whose gaps are cheap enough to track all nodes in
-/// every step.
+/// Gives every node without one a pair, for primary sides whose gaps are cheap enough to track all
+/// nodes in every step.
 fn watch_every_node(nodes: usize, pairs: &mut Vec<Pair>) {
     let mut known = std::mem::take(pairs).into_iter().peekable();
     for node in 0..nodes {

@@ -364,7 +364,8 @@ impl Kinematics for NodeToFacet {
         let before = self.places(before);
         let now = self.places(now);
         let starts = pairing.fresh;
-        let left = self.leave_joints(&mut pairing.pairs, starts, now.flat());
+        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
+        let left = self.leave_joints(&mut pairing.pairs, now.flat());
         let slid = self.slide(before, now, pairing, events)
             | self.take_joints(&mut pairing.pairs, &left, now.flat());
         if starts {

@@ -13,8 +13,8 @@ use crate::check::skins::{BodySkin, length, part_of, position, skin_nodes};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
 
-/// Allowed depth, over the length of a facet, of all parts: chords of facets that lie on a circle are
-/// inside it, and curved facets bulge beside a sharp edge.
+/// Allowed depth, over the length of a facet, of all parts: chords of facets that lie on a circle
+/// are inside it, and curved facets bulge beside a sharp edge.
 const SHARE: f64 = 0.25;
 
 /// The convex parts of the obstacle of a contact.

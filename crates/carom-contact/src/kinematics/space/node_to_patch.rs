@@ -431,7 +431,8 @@ impl Kinematics for NodeToPatch {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let starts = pairing.fresh;
-        let left = self.leave_joints(&mut pairing.pairs, starts, now);
+        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
+        let left = self.leave_joints(&mut pairing.pairs, now);
         let slid = self.slide(now, pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
         if starts {
             self.start_joints(&mut pairing.pairs, before);
