@@ -60,7 +60,7 @@ pub(crate) fn places(run: &Recorded, name: &str, rows: &[&ContactRow]) -> (BTree
         }
         let rubs: Vec<bool> = order.iter().map(|&k| rubbing.contains(&points[k].0)).collect();
         for (i, &k) in order.iter().enumerate().filter(|(i, _)| rubs[*i]) {
-            // Of a pressure field, only the nodes that stand for its coefficients have rows.
+            // Only nodes that stand for coefficients of a pressure field have rows.
             let previous = (0..i).rev().find(|&j| is_field && rubs[j]).or(i.checked_sub(1));
             let next = (i + 1..places.len()).find(|&j| is_field && rubs[j]).or(Some(i + 1));
             let half_way = |other: Option<usize>| {

@@ -225,7 +225,7 @@ fn a_node_behind_both_sides_of_a_concave_corner_has_a_pair_with_either() {
         assert!(found.len() == 2 && (0..2).all(|i| (found[i] - gaps[i]).abs() < 1e-15), "{found:?}");
         assert!(pairing.pairs.iter().all(|pair| !pair.active));
     }
-    // It slides up the wall, then along the floor, and keeps the pair there.
+    // A node that slides up the wall, then along the floor, keeps its pair there.
     for (away, facet) in [([2.0, 1.0], 0), ([1.0, 0.0], 2)] {
         let mut pairing = Pairing::default();
         found(&channel, &mut pairing, [2.0, 0.1], [2.02, -0.01]);

@@ -78,7 +78,7 @@ impl Tips {
         }
     }
 
-    /// Those that may have met the body.
+    /// The parts of obstacles that may have met the body.
     pub(crate) fn pierced(
         &mut self,
         model: &Model,

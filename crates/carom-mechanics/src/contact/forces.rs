@@ -134,7 +134,7 @@ impl Equations<'_> {
         self.model.contacts[k].kinematics.measure(&mut pair.clone(), place, turned)?;
         let p = turned.len() - 1;
         if turned.row(p).nodes.is_empty() {
-            // It faces the other side at the end only.
+            // The pair faces the other side at the end of the step only.
             turned.pop();
             turned.push_row(rows[k].row(p));
             return Ok(());

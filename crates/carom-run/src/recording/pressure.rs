@@ -198,7 +198,7 @@ fn forces(model: &Model, state: &State) -> BTreeMap<usize, Load> {
                 row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)).enumerate()
             {
                 if is_of_field && k < row.own {
-                    // Its pressure is known.
+                    // The pressure field gives the pressure of the secondary side.
                     continue;
                 }
                 let mut force = Vector::ZERO;
