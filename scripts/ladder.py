@@ -248,7 +248,7 @@ def with_mortar(text):
     parts = re.split(r"(?m)^(?=\[\[contact\]\])", text)
     for i, part in enumerate(parts[1:], 1):
         contact = tomllib.loads(part)["contact"][0]
-        of_two = isinstance(contact.get("primary"), str) and contact["primary"] != contact["secondary"]
+        of_two = "between" not in contact and contact["primary"] != contact["secondary"]
         if of_two and contact.get("law") != "predictor":
             parts[i] = part.replace("[[contact]]\n", '[[contact]]\nmethod = "mortar"\n', 1)
     return "".join(parts)

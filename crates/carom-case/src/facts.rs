@@ -4,7 +4,8 @@ use carom_record::metrics::Overlay;
 use carom_record::{ContactFacts, Facts, Held, body_of};
 
 use super::spec::{
-    Case, ContactSpec, Enforcement, FormulaSpec, ObstacleMotion, OverlaySpec, Persistency, SupportSpec,
+    Case, ContactSpec, Enforcement, FormulaSpec, Method, ObstacleMotion, OverlaySpec, Persistency,
+    SupportSpec,
 };
 
 impl Case {
@@ -48,6 +49,7 @@ fn contact(spec: &ContactSpec) -> ContactFacts {
         primary: spec.primary.side().map(str::to_owned),
         moves: !ObstacleMotion::is_fixed(&spec.motion),
         is_penalty: spec.enforcement == Enforcement::Penalty,
+        is_mortar: spec.method == Method::Mortar,
         projects: spec.persistency == Persistency::Project,
     }
 }

@@ -83,12 +83,12 @@ impl Record {
 
     /// The active contact nodes of all rows, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        tables::contact(py, &self.run.contact, self.run.manifest.facts.contact_axes())
+        tables::contact(py, &self.run.contact, self.run.manifest.facts.contact_columns())
     }
 
     /// Units of these columns.
     fn contact_units(&self) -> HashMap<&'static str, String> {
-        tables::contact_units(&self.run.history, self.run.manifest.facts.contact_axes())
+        tables::contact_units(&self.run.history, self.run.manifest.facts.contact_columns())
     }
 
     /// The events.

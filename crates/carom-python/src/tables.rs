@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use carom::record::{ContactCell, ContactRow, ContactValue, History};
+use carom::record::{ContactCell, ContactColumns, ContactRow, ContactValue, History};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -29,9 +29,9 @@ pub(crate) fn integers(py: Python<'_>, values: Vec<i64>) -> PyResult<Bound<'_, P
 }
 
 /// Unit labels of the columns of `contact.csv`, in the units of the history.
-pub(crate) fn contact_units(history: &History, axes: usize) -> HashMap<&'static str, String> {
+pub(crate) fn contact_units(history: &History, columns: ContactColumns) -> HashMap<&'static str, String> {
     let mut row = ContactRow::default();
-    row.cells(axes).into_iter().map(|cell| (cell.name, cell.unit.label(history))).collect()
+    row.cells(columns).into_iter().map(|cell| (cell.name, cell.unit.label(history))).collect()
 }
 
 /// Values of a column of `contact.csv`.
@@ -45,16 +45,16 @@ enum Values {
 pub(crate) fn contact<'py>(
     py: Python<'py>,
     rows: &[ContactRow],
-    axes: usize,
+    columns: ContactColumns,
 ) -> PyResult<Bound<'py, PyDict>> {
     let empty = |cell: ContactCell| match cell.value {
         ContactValue::Count(_) => Values::Integers(Vec::new()),
         ContactValue::Real(_) => Values::Reals(Vec::new()),
         ContactValue::Text(_) => Values::Texts(Vec::new()),
     };
-    let mut columns: Vec<Values> = ContactRow::default().cells(axes).into_iter().map(empty).collect();
+    let mut values: Vec<Values> = ContactRow::default().cells(columns).into_iter().map(empty).collect();
     for row in rows {
-        for (column, cell) in columns.iter_mut().zip(row.clone().cells(axes)) {
+        for (column, cell) in values.iter_mut().zip(row.clone().cells(columns)) {
             match (column, cell.value) {
                 (Values::Integers(column), ContactValue::Count(count)) => column.push(*count as i64),
                 (Values::Reals(column), ContactValue::Real(real)) => column.push(*real),
@@ -64,7 +64,7 @@ pub(crate) fn contact<'py>(
         }
     }
     let dict = PyDict::new(py);
-    for (name, column) in ContactRow::columns(axes).into_iter().zip(columns) {
+    for (name, column) in ContactRow::columns(columns).into_iter().zip(values) {
         match column {
             Values::Integers(values) => dict.set_item(name, integers(py, values)?)?,
             Values::Reals(values) => dict.set_item(name, array(py, values)?)?,

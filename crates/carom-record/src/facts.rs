@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::ContactColumns;
 use crate::expect::Expect;
 
 /// Properties of a case, filled in by whoever resolves the case.
@@ -51,6 +52,9 @@ pub struct ContactFacts {
     pub is_penalty: bool,
     /// Whether velocities are projected where contact begins.
     pub projects: bool,
+    /// Whether the contact is a mortar, which has a pressure field.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_mortar: bool,
 }
 
 /// An axis along which a support holds a body.
@@ -88,9 +92,12 @@ impl Overlay {
 }
 
 impl Facts {
-    /// Number of axes in the rows of `contact.csv`: 3 in dimension 3, otherwise 2.
-    pub fn contact_axes(&self) -> usize {
-        self.dimension.max(2)
+    /// The columns of `contact.csv`.
+    pub fn contact_columns(&self) -> ContactColumns {
+        ContactColumns {
+            axes: self.dimension.max(2),
+            has_field: self.contacts.iter().any(|contact| contact.is_mortar),
+        }
     }
 }
 

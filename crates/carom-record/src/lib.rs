@@ -55,7 +55,7 @@ pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Statu
 pub use pvd::FieldEntry;
 pub use reason::Reason;
 pub use recorder::{MemoryRecord, Recorder};
-pub use rows::{ContactCell, ContactRow, ContactValue, Event};
+pub use rows::{ContactCell, ContactColumns, ContactRow, ContactValue, Event};
 pub use run::{History, Run};
 pub use stop::{Advice, Stop, StopIteration, StopNode, StopPlace};
 pub use vtu::{Block, Cell, CellMaterials, FieldSet, PointArray};

@@ -35,9 +35,9 @@ pub struct ContactRow<'a> {
     pub eta: f64,
     /// Gap, negative for penetration.
     pub gap: f64,
-    /// Contact multiplier in units of force, negative for compression.
+    /// Normal force, negative for compression.
     pub multiplier: f64,
-    /// −multiplier / consistent weight of the node.
+    /// Force per area of the deformed surface at the node.
     pub pressure: f64,
     /// Outward unit normal of the primary: the force on the secondary side is −multiplier · normal.
     pub normal: [f64; 3],
@@ -51,6 +51,20 @@ pub struct ContactRow<'a> {
     pub slip: f64,
     /// Force of friction on the secondary side, in space.
     pub rubbing: [f64; 3],
+    /// Force per area of the reference surface at the node, of a mortar contact.
+    pub nominal: f64,
+    /// Point at which the resultant of the pressure acts for which the row stands, of a mortar
+    /// contact.
+    pub center: [f64; 2],
+}
+
+/// Which columns `contact.csv` has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactColumns {
+    /// Number of axes of positions: 3 in dimension 3, otherwise 2.
+    pub axes: usize,
+    /// Whether a contact is a mortar: the columns of a pressure field follow.
+    pub has_field: bool,
 }
 
 /// A value of a row, to be read or written.
@@ -74,9 +88,10 @@ pub struct ContactCell<'r, 'a> {
 }
 
 impl<'a> ContactRow<'a> {
-    /// The cells of the row in the order of the file, in which positions have this number of axes.
-    pub fn cells(&mut self, axes: usize) -> Vec<ContactCell<'_, 'a>> {
+    /// The cells of the row in the order of the file.
+    pub fn cells(&mut self, columns: ContactColumns) -> Vec<ContactCell<'_, 'a>> {
         use ContactValue::{Count, Real, Text};
+        let ContactColumns { axes, has_field } = columns;
         let in_space = if axes == 3 { 3 } else { 0 };
         let cell = |name, unit, value| ContactCell { name, unit, value };
         let length = |(name, value)| cell(name, Unit::Length, Real(value));
@@ -102,12 +117,16 @@ impl<'a> ContactRow<'a> {
         cells.push(length(("slip", &mut self.slip)));
         let rubbing = ["friction_x", "friction_y", "friction_z"].into_iter().zip(&mut self.rubbing);
         cells.extend(rubbing.take(in_space).map(force));
+        if has_field {
+            cells.push(cell("nominal_pressure", Unit::Stress, Real(&mut self.nominal)));
+            cells.extend(["center_x", "center_y"].into_iter().zip(&mut self.center).map(length));
+        }
         cells
     }
 
-    /// Header of `contact.csv` for this number of axes.
-    pub fn columns(axes: usize) -> Vec<&'static str> {
-        ContactRow::default().cells(axes).iter().map(|cell| cell.name).collect()
+    /// Header of `contact.csv`.
+    pub fn columns(columns: ContactColumns) -> Vec<&'static str> {
+        ContactRow::default().cells(columns).iter().map(|cell| cell.name).collect()
     }
 }
 
@@ -180,9 +199,9 @@ impl Table {
         self.writer.write_record(None::<&[u8]>).map_err(failed)
     }
 
-    pub(crate) fn contact(&mut self, row: &ContactRow, axes: usize) -> Result<(), RecordError> {
+    pub(crate) fn contact(&mut self, row: &ContactRow, columns: ContactColumns) -> Result<(), RecordError> {
         let mut row = row.clone();
-        self.row(row.cells(axes).into_iter().map(|cell| match cell.value {
+        self.row(row.cells(columns).into_iter().map(|cell| match cell.value {
             ContactValue::Count(count) => Value::Count(*count),
             ContactValue::Real(real) => Value::Real(*real),
             ContactValue::Text(text) => Value::Text(text),

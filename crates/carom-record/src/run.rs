@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use crate::decimal::decimal;
 use crate::rows::{ContactCell, ContactValue};
-use crate::{Column, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Stop, pvd};
+use crate::{
+    Column, ContactColumns, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Stop, pvd,
+};
 
 const HINT: &str = "resume from the last checkpoint with `carom resume`, or run the case again";
 
@@ -76,7 +78,7 @@ impl Run {
         Ok(Self {
             directory: directory.to_path_buf(),
             history,
-            contact: contact(&lines("contact.csv")?, manifest.facts.contact_axes())?,
+            contact: contact(&lines("contact.csv")?, manifest.facts.contact_columns())?,
             log: log(&lines("log.jsonl")?)?,
             stop: Stop::read(directory, &manifest)?,
             fields,
@@ -179,11 +181,11 @@ fn history(lines: &Lines, columns: &[Column]) -> Result<History, RecordError> {
     Ok(History::new(columns.to_vec(), values))
 }
 
-fn contact(lines: &Lines, axes: usize) -> Result<Vec<ContactRow<'static>>, RecordError> {
+fn contact(lines: &Lines, columns: ContactColumns) -> Result<Vec<ContactRow<'static>>, RecordError> {
     let mut list = Vec::new();
-    rows(lines, &ContactRow::columns(axes), |record| {
+    rows(lines, &ContactRow::columns(columns), |record| {
         let mut row = ContactRow::default();
-        for (i, ContactCell { name, value, .. }) in row.cells(axes).into_iter().enumerate() {
+        for (i, ContactCell { name, value, .. }) in row.cells(columns).into_iter().enumerate() {
             match value {
                 ContactValue::Count(count) => *count = number(record, i, name)?,
                 ContactValue::Real(real) => *real = number(record, i, name)?,

@@ -18,7 +18,9 @@ use crate::checkpoint::{self, Generation, Header};
 use crate::intact::{Intact, ROW_FILES, missing, newest_first, no_checkpoint, verified};
 use crate::rows::{Table, Value};
 use crate::stream::Stream;
-use crate::{ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Status, files, pvd};
+use crate::{
+    ContactColumns, ContactRow, Event, FieldEntry, FieldSet, Manifest, RecordError, Status, files, pvd,
+};
 
 /// The least time between two flushes. Only checkpoints flush: a power failure costs what was
 /// computed since the last one that did.
@@ -30,7 +32,7 @@ pub struct RunWriter {
     /// Whether each column of the history is an integer.
     integer: Vec<bool>,
     /// Axes of the positions and normals of contact rows.
-    axes: usize,
+    columns: ContactColumns,
     /// The three row files, in the order of [`ROW_FILES`].
     rows: [Table; 3],
     /// Header of the next checkpoint; its streams are those of the last one.
@@ -108,7 +110,7 @@ impl RunWriter {
         manifest.write(partial)?;
         let mut header = Header { payload: payload.len() as u64, ..Header::default() };
         let columns: Vec<&str> = manifest.columns.iter().map(|c| c.name.as_str()).collect();
-        let of_contact = ContactRow::columns(manifest.facts.contact_axes());
+        let of_contact = ContactRow::columns(manifest.facts.contact_columns());
         for (i, names) in [&columns[..], &of_contact, &[]].into_iter().enumerate() {
             let path = partial.join(ROW_FILES[i]);
             let stream = Stream::create(&path).map_err(RecordError::io("create", &path))?;
@@ -158,7 +160,7 @@ impl RunWriter {
         let writer = Self {
             directory: directory.to_path_buf(),
             integer: manifest.columns.iter().map(|c| c.integer).collect(),
-            axes: manifest.facts.contact_axes(),
+            columns: manifest.facts.contact_columns(),
             rows: rows.try_into().unwrap_or_else(|_| unreachable!("three row files")),
             newest: generation,
             // The killed process may not have flushed what the checkpoint describes.
@@ -202,7 +204,7 @@ impl RunWriter {
 
     /// Appends a row of `contact.csv`.
     pub fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
-        self.rows[1].contact(row, self.axes)
+        self.rows[1].contact(row, self.columns)
     }
 
     /// Appends a line of `log.jsonl`.

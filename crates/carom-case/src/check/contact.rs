@@ -117,7 +117,7 @@ impl Check<'_> {
     }
 
     /// Reports what mortar contact does not have: other dimensions than the plane, contact of a
-    /// side with itself, rigid obstacles, schemes and laws with impulses, and the detection of the
+    /// side with itself, schemes and laws with impulses, and the detection of the
     /// paper.
     fn mortar(&mut self, contact: &ContactSpec) {
         if contact.method != Method::Mortar {
@@ -133,9 +133,6 @@ impl Check<'_> {
         if let Some(dimension @ (1 | 3)) = draft.dimension {
             let why = "its weights are integrals over curves in the plane";
             refuse(&format!("in dimension {dimension}"), why, nodes);
-        }
-        if contact.primary.side().is_none() {
-            refuse("with a rigid obstacle", "the primary must be a side of a body", nodes);
         }
         if contact.is_of_itself() {
             let why = "its multipliers belong to one of two sides";

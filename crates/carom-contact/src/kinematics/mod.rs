@@ -70,7 +70,7 @@ pub struct NodalPressure {
 }
 
 /// A method to find pairs of two sides and to measure their gaps.
-pub trait Kinematics: Send + Sync {
+pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// Global numbers of the secondary nodes. In contact of a side with itself all nodes occur
     /// twice: as nodes of the later place, then as nodes of the earlier one.
     fn secondary(&self) -> &[usize];

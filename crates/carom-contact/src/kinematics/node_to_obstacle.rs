@@ -1,19 +1,5 @@
-//! Secondary nodes against a rigid obstacle, fixed or carried by nodes (`carrier.rs`).
-//!
-//! With the signed distance G(p) of the shape (`obstacle/`), n = ∇G and H = ∇²G, the place p of a
-//! node x in the coordinates of the shape, and γ = (1, −w₁, −w₂, …) over the node and the carrier,
-//!
-//! ```text
-//! g = G(p)      δp = F⁻¹ r,   r = Σ γ_k δy_k      ∂g/∂y_k = γ_k N,   N = F⁻ᵀ n
-//! ∂²g/∂y_k∂y_l = γ_k γ_l F⁻ᵀ H F⁻¹ − N ⊗ Ω_k γ_l − γ_k Ω_l ⊗ N      Ω_a = F⁻ᵀ ω_a of the carrier, 0 of the node
-//! ```
-//!
-//! The rows of the slip are γ_k τ of every tangent τ ⊥ N, so that it is zero for every rigid motion
-//! of node and obstacle: weights at the middle of a step are those of its ends. With m = N/|N|,
-//!
-//! ```text
-//! ∂(γ_k τ)/∂y_l = −γ_k m ⊗ (γ_l F⁻ᵀ H F⁻¹ τ − (τ·Ω_l) N)/|N| − τ ⊗ Ω_k γ_l
-//! ```
+//! Secondary nodes against a rigid obstacle, fixed or carried by nodes (`carrier.rs`), with gaps
+//! and slips as in `obstacle/gap.rs`.
 //!
 //! At a sharp corner or edge of the obstacle the nearest piece may be one on which the body cannot
 //! press. There a node belongs to the piece that is parallel to a facet of its body, also if it
@@ -29,7 +15,7 @@ use carom_algebra::Vector;
 
 use super::carrier::{Carrier, Local};
 use super::node_to_facet::NodeToFacet;
-use super::obstacle::{AtCorner, CORNER_COSINE, Near, Obstacle, Point, Through, Tip, dot};
+use super::obstacle::{AtCorner, CORNER_COSINE, Near, Obstacle, ObstacleGap, Point, Through, Tip, dot};
 use super::one_way::OneWay;
 use super::outward::{Outward, is_opposed};
 use super::passed::Passed;
@@ -60,8 +46,16 @@ impl NodeToObstacle {
     /// Contact of secondary nodes with an obstacle that is fixed in space.
     pub fn new(secondary: Vec<usize>, dimension: usize, shape: Obstacle) -> Self {
         let tips = shape.tips(f64::INFINITY);
-        let lengths = Vec::new();
-        Self { secondary, dimension, shape, carrier: None, tips, lengths, own: None, kept: Vec::new() }
+        Self {
+            secondary,
+            dimension,
+            shape,
+            carrier: None,
+            tips,
+            lengths: Vec::new(),
+            own: None,
+            kept: Vec::new(),
+        }
     }
 
     /// Contact with an obstacle that moves with the nodes of a carrier.
@@ -82,6 +76,18 @@ impl NodeToObstacle {
     #[must_use]
     pub fn of_body(self, own: Outward) -> Self {
         Self { own: Some(own), ..self }
+    }
+
+    /// Contact of those of the nodes that are listed.
+    #[must_use]
+    pub fn of_nodes(&self, nodes: &[usize]) -> Self {
+        let own = self.secondary.iter().enumerate().filter(|(_, node)| nodes.contains(node));
+        let places: Vec<usize> = own.map(|(place, _)| place).collect();
+        Self {
+            secondary: places.iter().map(|&place| self.secondary[place]).collect(),
+            lengths: places.iter().filter_map(|&place| self.lengths.get(place).copied()).collect(),
+            ..self.clone()
+        }
     }
 
     fn position(&self, node: usize, y: &[f64]) -> Point {
@@ -221,49 +227,38 @@ impl NodeToObstacle {
         walls
     }
 
+    /// The gap of a node, given by its global number, to a piece of the obstacle.
+    fn gap(&self, piece: usize, node: usize, y: &[f64]) -> Option<ObstacleGap> {
+        let local = self.local(node, y);
+        let near = self.shape.near(piece, local.at)?;
+        Some(ObstacleGap::new(near, local, self.carriers()))
+    }
+
+    /// The gap of any point of space to the piece of the obstacle that it faces.
+    pub(super) fn gap_of_point(&self, place: Point, y: &[f64]) -> Option<ObstacleGap> {
+        let carrier = self.carrier.as_ref();
+        let local = carrier.map_or(Local::fixed(place), |carrier| carrier.local(place, y, self.dimension));
+        let near = self.shape.near(self.shape.facing(local.at, 0), local.at)?;
+        Some(ObstacleGap::new(near, local, self.carriers()))
+    }
+
+    /// Global numbers of the nodes that carry the obstacle.
+    pub(super) fn carriers(&self) -> &[usize] {
+        self.carrier.as_ref().map_or(&[], |carrier| &carrier.nodes)
+    }
+
     /// The tangents of a pair: two in space, one in the plane.
-    fn tangents(&self, pair: &Pair, normal: Point) -> [Point; 2] {
-        if self.dimension == 2 {
-            return [turned(normal), [0.0; 3]];
-        }
-        tangents(Vector(normal), pair.tangential.tangents).map(|tangent| tangent.0)
-    }
-
-    /// Weights γ of the node of a pair, 1, and of the nodes of the carrier, −w_a, in the gap.
-    fn factors(&self, local: &Local) -> Vec<f64> {
-        let carrier = self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
-        std::iter::once(1.0).chain(local.weights[..carrier].iter().map(|weight| -weight)).collect()
-    }
-
-    /// Spatial gradients Ω of the weights of the node of a pair, 0, and of the nodes of the
-    /// carrier.
-    fn slopes(&self, local: &Local) -> Vec<Point> {
-        let carrier = self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
-        std::iter::once([0.0; 3]).chain((0..carrier).map(|a| local.slope(a))).collect()
-    }
-
-    /// Adds a row with the gradients γ_k v over a secondary node and the nodes of the carrier.
-    fn push(&self, gap: f64, node: usize, local: &Local, v: Point, rows: &mut Rows) {
-        let carrier = self.carrier.iter().flat_map(|carrier| carrier.nodes.iter().copied());
-        let nodes = std::iter::once(node).chain(carrier);
-        rows.push(gap, nodes.zip(self.factors(local)).map(|(node, factor)| (node, v.map(|x| factor * x))));
-    }
-
-    /// Overwrites a matrix over a secondary node and the nodes of the carrier with `entry([k, l],
-    /// [i, j])` for nodes k, l and axes i, j.
-    fn fill(&self, matrix: &mut [f64], entry: impl Fn([usize; 2], [usize; 2]) -> f64) {
-        let d = self.dimension;
-        let blocks = 1 + self.carrier.as_ref().map_or(0, |carrier| carrier.nodes.len());
-        let size = blocks * d;
-        for (row, values) in matrix[..size * size].chunks_exact_mut(size).enumerate() {
-            for (column, value) in values.iter_mut().enumerate() {
-                *value = entry([row / d, column / d], [row % d, column % d]);
-            }
+    fn tangents(&self, pair: &Pair, gap: &ObstacleGap) -> [Point; 2] {
+        match self.dimension {
+            2 => [gap.tangent(), [0.0; 3]],
+            _ => tangents(Vector(gap.direction()), pair.tangential.tangents).map(|tangent| tangent.0),
         }
     }
 
-    fn near(&self, piece: usize, at: Point, node: usize) -> Result<Near, ContactError> {
-        self.shape.near(piece, at).ok_or(ContactError::Center { node })
+    /// Adds a row with a vector for a secondary node and for each node of the carrier.
+    fn push(&self, gap: f64, node: usize, vectors: impl Iterator<Item = Point>, rows: &mut Rows) {
+        let carrier = self.carriers().iter().copied();
+        rows.push(gap, std::iter::once(node).chain(carrier).zip(vectors));
     }
 }
 
@@ -367,77 +362,37 @@ impl Kinematics for NodeToObstacle {
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
-        let local = self.local(node, y);
-        pair.facet = self.measured(pair, &local, y);
-        let near = self.near(pair.facet, local.at, node)?;
-        self.push(near.gap + self.kept(pair.node), node, &local, local.forth(near.normal), rows);
+        pair.facet = self.measured(pair, &self.local(node, y), y);
+        let gap = self.gap(pair.facet, node, y).ok_or(ContactError::Center { node })?;
+        self.push(gap.distance + self.kept(pair.node), node, gap.gradient(), rows);
         Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let local = self.local(self.secondary[pair.node], y);
-        let Some(Near { normal, bend, straight, .. }) = self.shape.near(pair.facet, local.at) else {
-            self.fill(curvature, |_, _| 0.0);
-            return;
-        };
-        let n = local.forth(normal);
-        let bent = |k: usize, i: usize| {
-            let same = if i == k { 1.0 } else { 0.0 };
-            bend * (same - (normal[i] * normal[k] + straight[i] * straight[k]))
-        };
-        // F⁻ᵀ H F⁻¹ by columns.
-        let unit = |j: usize| -> Point { std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 }) };
-        let column = |j: usize| {
-            let back = local.back(unit(j));
-            local.forth(std::array::from_fn(|i| (0..3).map(|k| bent(k, i) * back[k]).sum()))
-        };
-        let shape = [column(0), column(1), column(2)];
-        let factors = self.factors(&local);
-        let slopes = self.slopes(&local);
-        self.fill(curvature, |[k, l], [i, j]| {
-            let turns = n[i] * slopes[k][j] * factors[l] + factors[k] * slopes[l][i] * n[j];
-            factors[k] * factors[l] * shape[j][i] - turns
-        });
+        match self.gap(pair.facet, self.secondary[pair.node], y) {
+            Some(gap) => gap.curvature_into(self.dimension, curvature),
+            None => curvature.fill(0.0),
+        }
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let node = self.secondary[pair.node];
-        let local = self.local(node, y);
-        let normal = local.forth(self.near(pair.facet, local.at, node)?.normal);
-        for along in self.tangents(pair, unit(normal)).into_iter().take(self.dimension - 1) {
-            self.push(0.0, node, &local, along, rows);
+        let gap = self.gap(pair.facet, node, y).ok_or(ContactError::Center { node })?;
+        for along in self.tangents(pair, &gap).into_iter().take(self.dimension - 1) {
+            self.push(0.0, node, gap.row(along), rows);
         }
         Ok(())
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
-        let local = self.local(self.secondary[pair.node], y);
-        let Some(near) = self.shape.near(pair.facet, local.at) else {
-            self.fill(matrix, |_, _| 0.0);
-            return;
-        };
-        let normal = local.forth(near.normal);
-        let size = dot(normal, normal).sqrt();
-        let along = self.tangents(pair, unit(normal))[tangent];
-        let bent = local.forth(near.bent(local.back(along)));
-        let factors = self.factors(&local);
-        let slopes = self.slopes(&local);
-        self.fill(matrix, |[k, l], [i, j]| {
-            let turned = (factors[l] * bent[j] - dot(along, slopes[l]) * normal[j]) / size;
-            -factors[k] * normal[i] / size * turned - along[i] * slopes[k][j] * factors[l]
-        });
+        match self.gap(pair.facet, self.secondary[pair.node], y) {
+            Some(gap) => {
+                let along = self.tangents(pair, &gap)[tangent];
+                gap.slip_derivative_into(self.dimension, along, matrix);
+            }
+            None => matrix.fill(0.0),
+        }
     }
-}
-
-/// A vector scaled to length one; unchanged bitwise if it has that length to round-off.
-fn unit(v: Point) -> Point {
-    let size = dot(v, v).sqrt();
-    if (size - 1.0).abs() <= f64::EPSILON { v } else { v.map(|x| x / size) }
-}
-
-/// A vector of the plane rotated by 90°.
-fn turned(v: Point) -> Point {
-    [-v[1], v[0], 0.0]
 }
 
 #[cfg(test)]

@@ -106,10 +106,11 @@ impl TipToFacet {
         }
     }
 
-    /// Contact by springs, whose rows may depend on each other: no part is left to a node, after
-    /// which its spring would begin with a depth.
+    /// Contact in which no part is left to a node that it meets: by springs, whose rows may depend
+    /// on each other, and after which that of the part would begin with a depth; and beside a
+    /// mortar, which has no rows of nodes.
     #[must_use]
-    pub fn with_springs(self) -> Self {
+    pub fn not_left_to_nodes(self) -> Self {
         Self { leaves: false, ..self }
     }
 

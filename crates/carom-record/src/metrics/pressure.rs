@@ -97,14 +97,16 @@ fn at_rest(run: &Run) -> Option<Vec<&ContactRow<'static>>> {
     (!rows.is_empty()).then_some(rows)
 }
 
-/// Coordinates of rows of the plane along the tangent that is orthogonal to the mean normal.
-fn places(run: &Run, rows: &[&ContactRow]) -> Option<Vec<f64>> {
+/// Coordinates of points of rows, in the plane, along the tangent that is orthogonal to the mean
+/// normal.
+fn places(run: &Run, rows: &[&ContactRow], point: impl Fn(&ContactRow) -> [f64; 2]) -> Option<Vec<f64>> {
     if run.manifest.facts.dimension == 3 {
         return None;
     }
     let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));
     let length = f64::hypot(x, y);
-    Some(rows.iter().map(|r| (y * r.point[0] - x * r.point[1]) / length).collect())
+    let along = |[px, py]: [f64; 2]| (y * px - x * py) / length;
+    Some(rows.iter().map(|row| along(point(row))).collect())
 }
 
 fn pressures(rows: &[&ContactRow]) -> Vec<f64> {
@@ -113,10 +115,12 @@ fn pressures(rows: &[&ContactRow]) -> Vec<f64> {
 
 /// Tangential coordinate of the resultant pressure at the end of a static run, Σ λᵢ sᵢ/Σ λᵢ.
 pub(crate) fn center(run: &Run) -> Option<f64> {
+    let has_field = run.manifest.facts.contact_columns().has_field;
+    let acts = |row: &ContactRow| if has_field { row.center } else { [row.point[0], row.point[1]] };
     let rows = at_rest(run)?;
     let forces = || rows.iter().map(|row| row.multiplier);
     let total = forces().sum::<f64>();
-    let moment = forces().zip(places(run, &rows)?).map(|(force, s)| force * s).sum::<f64>();
+    let moment = forces().zip(places(run, &rows, acts)?).map(|(force, s)| force * s).sum::<f64>();
     (total != 0.0).then(|| moment / total)
 }
 
@@ -141,7 +145,7 @@ pub(crate) fn largest_traction(run: &Run) -> Option<f64> {
 /// [`hertz`] of the pressures at the end of a static run.
 pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
     let rows = at_rest(run)?;
-    hertz(&places(run, &rows)?, &pressures(&rows))
+    hertz(&places(run, &rows, |row| [row.point[0], row.point[1]])?, &pressures(&rows))
 }
 
 #[cfg(test)]

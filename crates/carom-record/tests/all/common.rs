@@ -68,6 +68,7 @@ pub(crate) fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordErro
             traction: 0.0,
             slip: 0.0,
             rubbing: [0.0; 3],
+            ..ContactRow::default()
         };
         writer.contact(&row)?;
     }

@@ -34,6 +34,7 @@ fn what_is_written_is_read_back() {
         traction: 0.0,
         slip: 0.0,
         rubbing: [0.0; 3],
+        ..ContactRow::default()
     };
     writer.contact(&row).unwrap();
     let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);
@@ -80,6 +81,7 @@ fn rows_of_contact_in_space_are_read_back() {
         traction: 5.0,
         slip: 0.7,
         rubbing: [4.0, 0.0, -3.0],
+        ..ContactRow::default()
     };
     writer.history(&[0.0, 0.1, 0.0]).unwrap();
     writer.contact(&row).unwrap();

@@ -73,8 +73,8 @@ impl Bodies<'_> {
             case::Method::NodeToSegment => Box::new(both),
             case::Method::Mortar => {
                 let corners = BothSides::new(
-                    self.corners([secondary, primary], &of_secondary[0], [&opposite, &side]),
-                    self.corners([primary, secondary], &of_primary[0], [&side, &opposite]),
+                    self.corners(secondary, &of_secondary[0], [&opposite, &side]),
+                    self.corners(primary, &of_primary[0], [&side, &opposite]),
                 );
                 Box::new(Joined::new(Mortar::new(opposite, side, self.reference, both), corners))
             }
@@ -82,16 +82,13 @@ impl Bodies<'_> {
     }
 
     /// The corners of a side, except those on sides of `earlier` contacts, against the facets of
-    /// another one, which they may enter a little: a gap that is zero on average does not keep a
-    /// corner out.
-    fn corners(&self, [of, into]: [&Side; 2], earlier: &[Side], [own, other]: [&Surface; 2]) -> NodeToFacet {
+    /// another one: a gap that is zero on average does not keep a corner out.
+    fn corners(&self, of: &Side, earlier: &[Side], [own, other]: [&Surface; 2]) -> NodeToFacet {
         let corners = own.corners(self.reference);
-        let NodesWithDepth { nodes, depths } = self.others(of, earlier, into, &[]);
-        let may_enter = nodes.into_iter().zip(depths).filter(|(node, _)| corners.contains(node));
-        let (nodes, depths) = may_enter.unzip();
-        NodeToFacet::new(nodes, other.clone(), Detection::ClosestPoint)
-            .with_allowed(depths)
-            .of_body(own.clone())
+        let mut nodes = without(&of.nodes, earlier);
+        nodes.retain(|node| corners.contains(node));
+        nodes.sort_unstable();
+        NodeToFacet::new(nodes, other.clone(), Detection::ClosestPoint).of_body(own.clone())
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {
@@ -126,15 +123,37 @@ impl Bodies<'_> {
         }
         let surface = self.surface(side, &siblings);
         let obstacle = obstacle.of_body(Outward::Plane(surface.clone()));
-        if obstacle.tips(self.reference).is_empty() {
-            return Box::new(obstacle);
+        let tips = (!obstacle.tips(self.reference).is_empty()).then(|| {
+            let tips = TipToFacet::new(&obstacle, surface.clone(), self.reference);
+            let spec = &self.case.contacts[k];
+            let springs = spec.enforcement == case::Enforcement::Penalty;
+            let rubs = spec.friction.exists();
+            let alone = springs || spec.method == case::Method::Mortar;
+            let tips = if alone { tips.not_left_to_nodes() } else { tips };
+            if springs || rubs { tips.with_single_facets() } else { tips }
+        });
+        match self.case.contacts[k].method {
+            case::Method::Mortar => self.mortar_with_obstacle(surface, obstacle, tips),
+            case::Method::NodeToSegment => match tips {
+                Some(tips) => Box::new(WithTips::new(obstacle, tips)),
+                None => Box::new(obstacle),
+            },
         }
-        let tips = TipToFacet::new(&obstacle, surface, self.reference);
-        let springs = self.case.contacts[k].enforcement == case::Enforcement::Penalty;
-        let rubs = self.case.contacts[k].friction.exists();
-        let tips = if springs { tips.with_springs() } else { tips };
-        let tips = if springs || rubs { tips.with_single_facets() } else { tips };
-        Box::new(WithTips::new(obstacle, tips))
+    }
+
+    /// Contact on average with a rigid obstacle, with its corners, if any, and those of the side.
+    fn mortar_with_obstacle(
+        &self,
+        surface: Surface,
+        obstacle: NodeToObstacle,
+        tips: Option<TipToFacet>,
+    ) -> Box<dyn Kinematics> {
+        let corners = obstacle.of_nodes(&surface.corners(self.reference));
+        let mortar = Joined::new(Mortar::with_obstacle(surface, obstacle, self.reference), corners);
+        match tips {
+            Some(tips) => Box::new(Joined::new(mortar, tips)),
+            None => Box::new(mortar),
+        }
     }
 
     /// Whether a node over a joint has a pair with one facet: springs chatter, and load steps in

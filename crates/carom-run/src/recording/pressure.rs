@@ -98,6 +98,18 @@ impl Surfaces {
         pressures
     }
 
+    /// The pressures per area of the reference surface of contacts with a pressure field, by node of
+    /// their secondary sides.
+    pub(super) fn nominal_pressures(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
+        let mut pressures = BTreeMap::new();
+        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
+            for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
+                *pressures.entry(of.node).or_default() += of.nominal;
+            }
+        }
+        pressures
+    }
+
     /// The pressures that follow from the forces on nodes.
     fn of_forces(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
         let loads = self.loads(&forces(model, state));

@@ -1,5 +1,6 @@
 //! The rows of a state, as a run records them.
 
+use carom_algebra::Vector;
 use carom_case::{Case, history_columns};
 use carom_contact::{self as contact, FrictionState, Pair, Tangential, length};
 use carom_mechanics::model::{Contact, Model};
@@ -65,6 +66,7 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
         return rows;
     }
     let pressures = surfaces.pressures(model, state);
+    let nominal = surfaces.nominal_pressures(model, state);
     let pressure_at = |node: usize| pressures.get(&node).copied().unwrap_or(0.0);
     let in_space = model.dimension == 3;
     // Of each contact with friction in space: friction on the secondary side.
@@ -83,23 +85,29 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
         for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
             let Tangential { traction, slip, .. } = pair.tangential;
             let node = contact.kinematics.secondary()[pair.node];
-            let Opposed { gap, normal, shares } = opposed(contact, pair, state);
-            let mean = |of: &dyn Fn(usize) -> f64| shares.iter().map(|(node, share)| share * of(*node)).sum();
-            let coordinate = |i: usize| {
-                if i < model.dimension { mean(&|node| state.y[node * model.dimension + i]) } else { 0.0 }
+            let Opposed { gap, normal, size, shares, center } = opposed(contact, pair, state);
+            let traction = traction.map(|of| size * of);
+            let mean = |shares: &[(usize, f64)], of: &dyn Fn(usize) -> f64| {
+                shares.iter().map(|(node, share)| share * of(*node)).sum()
+            };
+            let coordinate = |shares: &[(usize, f64)], i: usize| {
+                let at = |node: usize| state.y[node * model.dimension + i];
+                if i < model.dimension { mean(shares, &at) } else { 0.0 }
             };
             rows.push(ContactRow {
                 step: state.step,
                 time: state.time,
                 contact: contact.name.as_str().into(),
                 node: node as u64,
-                point: std::array::from_fn(coordinate),
+                point: std::array::from_fn(|i| coordinate(&shares, i)),
                 facet: pair.facet as u64,
                 xi: pair.xi,
                 eta: pair.eta,
                 gap,
-                multiplier: pair.lambda,
-                pressure: mean(&pressure_at),
+                multiplier: size * pair.lambda,
+                pressure: mean(&shares, &pressure_at),
+                nominal: nominal.get(&node).copied().unwrap_or_default(),
+                center: std::array::from_fn(|i| coordinate(&center, i)),
                 normal,
                 friction: match (&contact.friction, pair.tangential.friction_state) {
                     _ if pair.node >= contact.kinematics.rubbing() => "none",
@@ -123,19 +131,37 @@ struct Opposed {
     gap: f64,
     /// Outward unit normal of the primary; NaN without a unique closest point.
     normal: [f64; 3],
+    /// Normal force for a multiplier of one: of a coefficient of a pressure field the share of its
+    /// area that is covered, otherwise 1.
+    size: f64,
     /// The nodes between which the contact point lies on its own side, with their shares in it.
     shares: Vec<(usize, f64)>,
+    /// The nodes between which the resultant acts, with their shares in that point: it is the
+    /// contact point but for coefficients of a pressure field, which stand for a node.
+    center: Vec<(usize, f64)>,
 }
 
 fn opposed(contact: &Contact, pair: &Pair, state: &State) -> Opposed {
     let mut rows = contact::Rows::new(contact.facets[0].0.dimension());
     let node = contact.kinematics.secondary()[pair.node];
-    if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
-        return Opposed { gap: f64::NAN, normal: [f64::NAN; 3], shares: vec![(node, 1.0)] };
+    let measured = contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
+    if measured.is_err() || rows.row(0).nodes.is_empty() {
+        let shares = vec![(node, 1.0)];
+        return Opposed { gap: f64::NAN, normal: [f64::NAN; 3], size: 1.0, center: shares.clone(), shares };
     }
     let row = rows.row(0);
     let gap = row.gap - contact.kinematics.allowed(pair.node);
-    let is_of_field = contact.kinematics.is_of_field(pair.node);
-    let shares = if is_of_field { vec![(node, 1.0)] } else { row.shares().collect() };
-    Opposed { gap, normal: row.normal(), shares }
+    if !contact.kinematics.is_of_field(pair.node) {
+        let shares: Vec<(usize, f64)> = row.shares().collect();
+        return Opposed { gap, normal: row.normal(), size: 1.0, center: shares.clone(), shares };
+    }
+    let size = Vector(row.normal()).norm();
+    let all: f64 = row.shares().map(|(_, share)| share).sum();
+    Opposed {
+        gap,
+        normal: row.normal().map(|n| n / size),
+        size,
+        shares: vec![(node, 1.0)],
+        center: row.shares().map(|(node, share)| (node, share / all)).collect(),
+    }
 }

@@ -2,13 +2,13 @@
 
 use super::cut::Opposed;
 use super::multipliers::MOST;
-use crate::kinematics::gap::Gap;
+use super::opposite::PointGap;
 
 /// A point of quadrature with the gap there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
     pub(super) at: Opposed,
-    pub(super) gap: Gap,
+    pub(super) gap: PointGap,
     /// Weight of quadrature, over the reference surface.
     pub(super) area: f64,
 }

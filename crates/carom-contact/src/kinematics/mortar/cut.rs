@@ -117,6 +117,14 @@ pub(super) struct Facing {
     pub(super) ends: Option<[f64; 2]>,
 }
 
+impl Facing {
+    /// A facet of which all points face a rigid obstacle.
+    pub(super) fn whole(rule: &[[f64; 2]]) -> Self {
+        let points = rule.iter().map(|&[xi, weight]| Opposed { xi, weight, facet: 0, eta: 0.0 });
+        Self { points: points.collect(), ends: Some([-1.0, 1.0]) }
+    }
+}
+
 /// The part of a secondary facet that lies opposite to a facet of the primary.
 struct Part<'a> {
     ends: [f64; 2],

@@ -8,10 +8,9 @@
 use std::sync::PoisonError;
 
 use super::cache::{Faced, Measured};
-use super::cut::{self, Facing, Opposed, Region};
+use super::cut::{Facing, Opposed};
 use super::multipliers::{MOST, Part, bernstein};
 use super::sides::Mortar;
-use crate::kinematics::gap::Gap;
 use crate::kinematics::projection::Facet;
 use crate::places::Places;
 
@@ -45,8 +44,7 @@ impl Mortar {
     }
 
     fn measure_facets(&self, y: Places) -> Vec<Faced> {
-        let region = |&facet: &usize| (facet, Region::of(&self.primary, facet, y));
-        let regions: Vec<(usize, Region)> = self.order.iter().map(region).collect();
+        let facing = self.opposite.facing(self.opposite.facets(), &self.rule, y);
         let mut faced: Vec<Faced> = Vec::new();
         for facet in 0..self.secondary.facets() {
             if !self.used[facet] {
@@ -54,8 +52,8 @@ impl Mortar {
                 continue;
             }
             let own = self.secondary.facet(facet);
-            let Facing { points, ends } = cut::facing(own, &self.primary, &regions, &self.rule, y);
-            let measured = points.into_iter().map(|at| self.measured(own, at, y));
+            let Facing { points, ends } = facing(own);
+            let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
             let points = measured.filter(|point| point.area > 0.0).collect();
             faced.push(Faced { points, ends, carriers: [0; MOST] });
         }
@@ -64,12 +62,12 @@ impl Mortar {
         faced
     }
 
-    fn measured(&self, own: Facet, at: Opposed, y: Places) -> Measured {
+    fn measured(&self, own: Facet, at: Opposed, y: Places) -> Option<Measured> {
         let place = own.at(y, at.xi);
-        let gap = Gap::closest(self.primary.facet(at.facet), y, place.position, at.eta);
-        let faces = facing(-place.normal.dot(&gap.at.normal));
+        let gap = self.opposite.gap(&at, place.position, y)?;
+        let faces = facing(-place.normal.dot(&gap.normal()));
         let area = faces * at.weight * own.at(self.reference(), at.xi).measure;
-        Measured { at, gap, area }
+        Some(Measured { at, gap, area })
     }
 
     /// For each facet and polynomial the polynomial that carries it: itself, if enough of its

@@ -11,14 +11,17 @@ mod cut;
 mod field;
 mod measured;
 mod multipliers;
+mod opposite;
 mod sides;
 mod weighted;
 mod windows;
 
 use carom_algebra::Vector;
 
+use self::opposite::Opposite;
 pub use self::sides::Mortar;
 use self::weighted::Sample;
+use super::obstacle::Tip;
 use super::passed::Passed;
 use super::{Kinematics, NodalPressure};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -28,8 +31,7 @@ use crate::rows::Rows;
 impl Mortar {
     /// Share of the area of a multiplier that faces the primary in the reference configuration.
     fn cover_at_start(&self, multiplier: usize) -> f64 {
-        let Some(&first) = self.order.first() else { return 0.0 };
-        let all = Pair { reach: self.order.len(), ..Pair::open(multiplier, first, 0.0) };
+        let Some(all) = self.opposite.whole(multiplier) else { return 0.0 };
         let samples = self.samples(&all, self.reference()).unwrap_or_default();
         samples.iter().map(|sample| sample.share).sum()
     }
@@ -87,7 +89,10 @@ impl Kinematics for Mortar {
     }
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
-        self.primary.facet(pair.facet).nodes
+        match &self.opposite {
+            Opposite::Side(primary) => primary.surface.facet(pair.facet).nodes,
+            Opposite::Obstacle(_) => &[],
+        }
     }
 
     /// Pairs never count as lying on one facet: nodes have gaps of their own.
@@ -96,16 +101,26 @@ impl Kinematics for Mortar {
     }
 
     fn facets(&self, _: usize) -> usize {
-        self.primary.facets()
+        match &self.opposite {
+            Opposite::Side(primary) => primary.surface.facets(),
+            Opposite::Obstacle(_) => 1,
+        }
     }
 
     fn signed_distance(&self, multiplier: usize, y: &[f64]) -> Option<f64> {
-        let first = *self.order.first()?;
-        let all = Pair { reach: self.order.len(), ..Pair::open(multiplier, first, 0.0) };
+        let mut all = self.opposite.whole(multiplier)?;
         let mut rows = Rows::new(2);
-        self.measure(&mut all.clone(), y, &mut rows).ok()?;
+        self.measure(&mut all, y, &mut rows).ok()?;
         let gap = rows.pop();
         gap.is_finite().then_some(gap)
+    }
+
+    fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {
+        self.sides.distance_to_obstacle(node, y)
+    }
+
+    fn tips(&self, y: &[f64]) -> Vec<Tip> {
+        self.sides.tips(y)
     }
 
     fn search(
@@ -136,14 +151,13 @@ impl Kinematics for Mortar {
             rows.push_open();
             return Ok(());
         }
-        let facing = self.primary.shape.nodes();
         let stencil = self.stencil(pair);
         let mut gap = 0.0;
         let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         for sample in &samples {
-            gap += sample.share * (sample.gap.distance + kept);
-            stencil.add_row(self, sample, sample.gap.gradient(facing), &mut slopes);
+            gap += sample.share * (sample.gap.distance() + kept);
+            sample.gap.gradient(stencil.adder(self, sample, &mut slopes));
         }
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
         Ok(())
@@ -170,7 +184,7 @@ impl Kinematics for Mortar {
         curvature.fill(0.0);
         let mut of_sample = [0.0; OF_SAMPLE];
         for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            sample.gap.curvature_into(self.primary.shape.nodes(), 2, &mut of_sample);
+            sample.gap.curvature_into(&mut of_sample);
             stencil.add_matrix(self, &sample, &of_sample, curvature);
         }
     }
@@ -179,7 +193,7 @@ impl Kinematics for Mortar {
         let stencil = self.stencil(pair);
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         for sample in self.samples(pair, Places::new(y, 2))? {
-            stencil.add_row(self, &sample, sample.gap.slip(self.primary.shape.nodes()), &mut slopes);
+            sample.gap.slip(stencil.adder(self, &sample, &mut slopes));
         }
         rows.push_of_many(0.0, &stencil.nodes, stencil.own, &slopes);
         Ok(())
@@ -190,7 +204,7 @@ impl Kinematics for Mortar {
         matrix.fill(0.0);
         let mut of_sample = [0.0; OF_SAMPLE];
         for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            sample.gap.slip_derivative_into(self.primary.shape.nodes(), &mut of_sample);
+            sample.gap.slip_derivative_into(&mut of_sample);
             stencil.add_matrix(self, &sample, &of_sample, matrix);
         }
     }

@@ -1,4 +1,4 @@
-//! The two sides of a mortar contact with their multipliers.
+//! The sides of a mortar contact with their multipliers.
 
 use std::sync::Mutex;
 
@@ -6,20 +6,17 @@ use carom_solid::quadrature;
 
 use super::cache::Cache;
 use super::multipliers::{Multiplier, degree_of_pressure, multipliers};
+use super::opposite::{Opposite, Primary};
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
-use crate::kinematics::{BothSides, NodeToFacet};
+use crate::kinematics::{Kinematics, NodeToObstacle};
 use crate::places::Places;
 
-/// Contact of two sides of bodies in the plane on average.
+/// Contact on average of a side in the plane with a side of another body or a rigid obstacle.
 #[derive(Debug)]
 pub struct Mortar {
     pub(super) secondary: Surface,
-    pub(super) primary: Surface,
-    /// Facets of the primary side, each followed by the next one along the side if there is one.
-    pub(super) order: Vec<usize>,
-    /// Place of each facet of the primary in `order`.
-    pub(super) place: Vec<usize>,
+    pub(super) opposite: Opposite,
     pub(super) multipliers: Vec<Multiplier>,
     /// Nodes that represent the multipliers.
     pub(super) nodes: Vec<usize>,
@@ -28,7 +25,7 @@ pub struct Mortar {
     /// Points and weights of quadrature on −1 … 1.
     pub(super) rule: Vec<[f64; 2]>,
     pub(super) reference: Vec<f64>,
-    /// Nodes of both sides.
+    /// Nodes on whose positions gaps depend.
     pub(super) surface: Vec<usize>,
     /// Whether each secondary facet belongs to a multiplier.
     pub(super) used: Vec<bool>,
@@ -38,7 +35,7 @@ pub struct Mortar {
     /// Depth that is kept at every point of a multiplier's part of the side.
     pub(super) kept_depths: Vec<f64>,
     /// Nodes of both sides against the other one: none may pass through it.
-    pub(super) sides: BothSides<NodeToFacet>,
+    pub(super) sides: Box<dyn Kinematics>,
     /// Initial depths that are kept at the nodes of both sides; multipliers keep `kept`.
     pub(super) sides_kept: Vec<(usize, f64)>,
 }
@@ -50,20 +47,32 @@ impl Mortar {
         secondary: Surface,
         primary: Surface,
         reference: &[f64],
-        sides: BothSides<NodeToFacet>,
+        sides: impl Kinematics + 'static,
+    ) -> Self {
+        Self::between(secondary, Opposite::Side(Primary::new(primary)), reference, Box::new(sides))
+    }
+
+    /// Contact of a secondary side with the obstacle of its nodes; `reference`: reference
+    /// positions, flat over all nodes.
+    pub fn with_obstacle(secondary: Surface, nodes: NodeToObstacle, reference: &[f64]) -> Self {
+        Self::between(secondary, Opposite::Obstacle(nodes.clone()), reference, Box::new(nodes))
+    }
+
+    fn between(
+        secondary: Surface,
+        opposite: Opposite,
+        reference: &[f64],
+        sides: Box<dyn Kinematics>,
     ) -> Self {
         let multipliers = multipliers(&secondary, reference);
-        let order = along(&primary);
-        let mut place = vec![0; primary.all()];
-        order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
-        let degree_of = |side: &Surface| side.shape().degree();
-        let exact = 2 * degree_of(&secondary).max(degree_of(&primary)) + 3;
+        let degree = secondary.shape().degree();
+        let exact = 2 * degree.max(opposite.degree()) + 3;
         let rule = quadrature::line(exact).iter().map(|(xi, weight)| [xi[0], weight]).collect();
         let mut used = vec![false; secondary.facets()];
         let parts = multipliers.iter().flat_map(|of| &of.parts);
         parts.for_each(|part| used[part.facet] = true);
-        let facets = |side: &Surface| side.nodes[..side.facets() * side.shape.nodes()].to_vec();
-        let mut surface = [facets(&secondary), facets(&primary)].concat();
+        let of_facets = &secondary.nodes[..secondary.facets() * secondary.shape.nodes()];
+        let mut surface = [of_facets, opposite.all_nodes()].concat();
         surface.sort_unstable();
         surface.dedup();
         Self {
@@ -71,11 +80,9 @@ impl Mortar {
             used,
             cache: Mutex::default(),
             nodes: multipliers.iter().map(|of| of.node).collect(),
-            degree: degree_of_pressure(degree_of(&secondary)),
+            degree: degree_of_pressure(degree),
             secondary,
-            primary,
-            order,
-            place,
+            opposite,
             multipliers,
             rule,
             reference: reference.to_vec(),
@@ -90,22 +97,4 @@ impl Mortar {
     pub(super) fn reference(&self) -> Places<'_> {
         Places::new(&self.reference, 2)
     }
-}
-
-/// The facets of a side that are surfaces, from the starts of its chains on.
-fn along(side: &Surface) -> Vec<usize> {
-    let mut order = Vec::new();
-    let mut seen = vec![false; side.facets()];
-    let is_start = |facet: &usize| side.neighbour_of_side(*facet, false).is_none();
-    // Loops, which have no start, come last.
-    let starts = (0..side.facets()).filter(is_start).chain(0..side.facets());
-    for start in starts.filter(|&facet| !side.is_mirror(facet)) {
-        let mut next = Some(start);
-        while let Some(facet) = next.filter(|&facet| !seen[facet]) {
-            seen[facet] = true;
-            order.push(facet);
-            next = side.neighbour_of_side(facet, true);
-        }
-    }
-    order
 }

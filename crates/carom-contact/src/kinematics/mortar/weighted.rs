@@ -5,17 +5,16 @@
 //! ```
 //!
 //! over the part of the secondary reference surface that has a partner; g is the gap of the point x
-//! (`gap.rs`), and its derivatives follow by the chain rule with the constant weights N_a. The
+//! (`opposite.rs`), and its derivatives follow by the chain rule with the constant weights N_a. The
 //! force of a multiplier λ_j = −p_j A_j is λ_j ∇g_j: at every point of quadrature equal, opposite
 //! and collinear on both sides, so that forces and moments are balanced for any quadrature.
 
 use carom_algebra::Vector;
 
 use super::cache::{Faced, Measured};
-use super::cut::{self, Region};
 use super::multipliers::{Part, bernstein};
+use super::opposite::PointGap;
 use super::sides::Mortar;
-use crate::kinematics::gap::Gap;
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;
 
@@ -26,8 +25,8 @@ pub(super) struct Sample {
     /// The secondary facet, and the weights N_a of its nodes in the point.
     own: usize,
     values: [f64; 4],
-    pub(super) gap: Gap,
-    /// Facet of the primary, and the closest point on it.
+    pub(super) gap: PointGap,
+    /// Facet of the primary, and the closest point on it; 0 of an obstacle.
     pub(super) facet: usize,
     pub(super) eta: f64,
 }
@@ -42,7 +41,7 @@ pub(super) struct Stencil {
 /// Most nodes of a facet in the plane.
 const NODES: usize = 4;
 
-/// Places of the nodes of two facets in a stencil.
+/// Places of the nodes of two facets, or a facet and a carrier, in a stencil.
 struct Placed {
     own: [usize; NODES],
     others: [usize; NODES],
@@ -58,32 +57,32 @@ impl Stencil {
         };
         let mut placed = Placed { own: [0; NODES], others: [0; NODES] };
         let own = mortar.secondary.facet(sample.own).nodes;
-        let others = mortar.primary.facet(sample.facet).nodes;
+        let others = mortar.opposite.nodes(sample.facet);
         placed.own.iter_mut().zip(own).for_each(|(at, &node)| *at = place(0, self.own, node));
         let end = self.nodes.len();
         placed.others.iter_mut().zip(others).for_each(|(at, &node)| *at = place(self.own, end, node));
         placed
     }
 
-    /// Adds a row over a point and the nodes of the facet opposite to one over the stencil.
-    pub(super) fn add_row(
+    /// A function that adds the part of a row of a point, number 0, or of a node opposite to a row
+    /// over the stencil.
+    pub(super) fn adder<'a>(
         &self,
         mortar: &Mortar,
-        sample: &Sample,
-        slopes: impl Iterator<Item = Vector<2>>,
-        sum: &mut [Vector<2>],
-    ) {
+        sample: &'a Sample,
+        sum: &'a mut [Vector<2>],
+    ) -> impl FnMut((usize, Vector<2>)) + 'a {
         let placed = self.place(mortar, sample);
-        for (p, slope) in slopes.enumerate() {
+        move |(p, slope)| {
             placed.each(p, sample, |(place, weight)| sum[place] += slope * (sample.share * weight));
         }
     }
 
-    /// Adds a matrix over a point and the nodes of the facet opposite, two components each, to one
-    /// over the stencil.
+    /// Adds a matrix over a point and the nodes opposite, two components each, to one over the
+    /// stencil.
     pub(super) fn add_matrix(&self, mortar: &Mortar, sample: &Sample, matrix: &[f64], sum: &mut [f64]) {
         let placed = self.place(mortar, sample);
-        let count = 1 + mortar.primary.shape.nodes();
+        let count = sample.gap.count();
         let n = 2 * count;
         let size = 2 * self.nodes.len();
         for p in 0..count {
@@ -106,7 +105,7 @@ impl Stencil {
 
 impl Placed {
     /// Calls a function with the nodes of the stencil on which number `p` of a gap's nodes depends:
-    /// the point, number 0, or a node of the facet opposite.
+    /// the point, number 0, or a node opposite.
     fn each(&self, p: usize, sample: &Sample, mut of: impl FnMut(Weighted)) {
         if p > 0 {
             of((self.others[p - 1], 1.0));
@@ -122,8 +121,8 @@ impl Mortar {
     pub(super) fn stencil(&self, pair: &Pair) -> Stencil {
         let mut nodes = self.multipliers[pair.node].nodes.clone();
         let own = nodes.len();
-        for facet in self.window(pair) {
-            for &node in self.primary.facet(facet).nodes {
+        for &facet in self.opposite.window(pair) {
+            for &node in self.opposite.nodes(facet) {
                 if !nodes[own..].contains(&node) {
                     nodes.push(node);
                 }
@@ -138,7 +137,6 @@ impl Mortar {
     /// If a point has no unique closest point on the primary.
     pub(super) fn samples(&self, pair: &Pair, y: Places) -> Result<Vec<Sample>, ContactError> {
         let multiplier = &self.multipliers[pair.node];
-        let window = self.places_of(pair);
         self.at(y, |of_facets| {
             let mut samples = Vec::new();
             for &Part { facet, polynomial } in &multiplier.parts {
@@ -147,11 +145,11 @@ impl Mortar {
                 let carried: Vec<usize> =
                     (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
                 for Measured { at, gap, area } in points.iter().filter(|_| !carried.is_empty()) {
-                    if !window.contains(self.place[at.facet]) {
+                    if !self.opposite.is_in_window(pair, at.facet) {
                         continue;
                     }
                     let of_point = Pair { facet: at.facet, xi: at.eta, ..*pair };
-                    ContactError::unless_regular(multiplier.node, &of_point, gap.a)?;
+                    gap.unless_regular(multiplier.node, &of_point)?;
                     let values = carried.iter().map(|&number| bernstein(self.degree, number, at.xi));
                     samples.push(Sample {
                         share: values.sum::<f64>() * area / multiplier.area,
@@ -171,13 +169,13 @@ impl Mortar {
     /// secondary side.
     pub(super) fn nearest_of(&self, pair: &Pair, y: Places) -> Option<f64> {
         const ENDS: [[f64; 2]; 2] = [[-1.0, 0.0], [1.0, 0.0]];
-        let region = |facet: usize| (facet, Region::of(&self.primary, facet, y));
-        let regions: Vec<(usize, Region)> = self.window(pair).map(region).collect();
+        let facing = self.opposite.facing(self.opposite.window(pair), &ENDS, y);
         let mut nearest: Option<f64> = None;
         for part in &self.multipliers[pair.node].parts {
             let own = self.secondary.facet(part.facet);
-            for at in cut::facing(own, &self.primary, &regions, &ENDS, y).points {
-                let gap = self.primary.gap(at.facet, at.eta, own.at(y, at.xi).position, y);
+            for at in facing(own).points {
+                let Some(gap) = self.opposite.gap(&at, own.at(y, at.xi).position, y) else { continue };
+                let gap = gap.distance();
                 nearest = Some(nearest.map_or(gap, |least| least.min(gap)));
             }
         }

@@ -4,9 +4,11 @@
 use carom_solid::{Bounds, Hull};
 
 use super::cut::Region;
+use super::opposite::{Opposite, Primary};
 use super::sides::Mortar;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
+use crate::kinematics::watch_every_node;
 use crate::pair::{Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -29,11 +31,11 @@ impl Window {
     }
 }
 
-impl Mortar {
+impl Primary {
     /// The facets of the window of a pair.
-    pub(super) fn window(&self, pair: &Pair) -> impl Iterator<Item = usize> + Clone + '_ {
+    pub(super) fn window(&self, pair: &Pair) -> &[usize] {
         let Window { first, last } = self.places_of(pair);
-        self.order[first..=last].iter().copied()
+        &self.order[first..=last]
     }
 
     /// First and last place of the window of a pair.
@@ -52,6 +54,21 @@ impl Mortar {
         pair.reach = (middle - first).max(last - middle);
     }
 
+    /// Makes the window of a pair contain another one; from a fresh start it becomes that one.
+    /// Returns whether it was different.
+    fn widen(&self, pair: &mut Pair, window: Window, is_fresh: bool) -> bool {
+        let known = self.places_of(pair);
+        let both = known.union(window);
+        if is_fresh {
+            self.set_window(pair, window);
+        } else if both != known {
+            self.set_window(pair, both);
+        }
+        both != known
+    }
+}
+
+impl Mortar {
     /// Finds the windows of all multipliers that may come into contact between two positions.
     /// Returns whether anything but an inactive pair changed.
     pub(super) fn find_windows(
@@ -61,8 +78,13 @@ impl Mortar {
         pairing: &mut Pairing,
         events: &mut Vec<PairEvent>,
     ) -> bool {
+        let Opposite::Side(primary) = &self.opposite else {
+            // Every pair has the whole obstacle.
+            watch_every_node(self.multipliers.len(), &mut pairing.pairs);
+            return false;
+        };
         let [before, now] = [before, now].map(|y| Places::new(y, 2));
-        let faced = self.faced([before, now], pairing.margin);
+        let faced = self.faced(primary, [before, now], pairing.margin);
         let mut known = std::mem::take(&mut pairing.pairs).into_iter().peekable();
         let mut changed = false;
         for (number, of) in self.multipliers.iter().enumerate() {
@@ -75,30 +97,15 @@ impl Mortar {
                 }
                 continue;
             };
-            let (pair, is_different) = self.widened(number, pair, window, pairing.fresh);
+            let is_new = pair.is_none();
+            let mut pair = pair.unwrap_or_else(|| Pair::open(number, primary.order[window.first], 0.0));
+            let is_different = primary.widen(&mut pair, window, is_new || pairing.fresh) || is_new;
             changed |= is_different && (pair.active || self.penetrates(&pair, now));
             pairing.pairs.push(pair);
         }
         pairing.fresh = false;
         in_order(&mut pairing.pairs);
         changed
-    }
-
-    /// A pair with a window that contains another one. Within a solve windows only grow.
-    fn widened(&self, number: usize, pair: Option<Pair>, window: Window, is_fresh: bool) -> (Pair, bool) {
-        let Some(mut pair) = pair else {
-            let mut pair = Pair::open(number, self.order[window.first], 0.0);
-            self.set_window(&mut pair, window);
-            return (pair, true);
-        };
-        let known = self.places_of(&pair);
-        let both = known.union(window);
-        if is_fresh {
-            self.set_window(&mut pair, window);
-        } else if both != known {
-            self.set_window(&mut pair, both);
-        }
-        (pair, both != known)
     }
 
     fn penetrates(&self, pair: &Pair, now: Places) -> bool {
@@ -109,8 +116,9 @@ impl Mortar {
 
     /// For every facet of the secondary side that comes near the primary on its way, the facets
     /// that it faces at either end.
-    fn faced(&self, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
-        let hulls = [&self.secondary, &self.primary].map(|side| Hull::line(side.shape().nodes(), 1.0));
+    fn faced(&self, primary: &Primary, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
+        let Primary { surface, order, .. } = primary;
+        let hulls = [&self.secondary, surface].map(|side| Hull::line(side.shape().nodes(), 1.0));
         let swept = |side: &Surface, hull: &Hull, facet: usize| {
             let nodes = side.facet(facet).nodes;
             let [old, new] = ends.map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
@@ -118,8 +126,7 @@ impl Mortar {
             bounds.grown(margin * bounds.size())
         };
         let mut faced = vec![None; self.secondary.facets()];
-        let boxes: Vec<Bounds> =
-            self.order.iter().map(|&facet| swept(&self.primary, &hulls[1], facet)).collect();
+        let boxes: Vec<Bounds> = order.iter().map(|&facet| swept(surface, &hulls[1], facet)).collect();
         let all = boxes.iter().fold(Bounds::EMPTY, Bounds::union);
         let own = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
         let own: Vec<(usize, Bounds)> =
@@ -127,13 +134,13 @@ impl Mortar {
         if own.iter().all(|(_, bounds)| !bounds.meets(&all)) {
             return faced;
         }
-        let of = |y: Places| self.order.iter().map(|&f| Region::of(&self.primary, f, y)).collect::<Vec<_>>();
+        let of = |y: Places| order.iter().map(|&facet| Region::of(surface, facet, y)).collect::<Vec<_>>();
         let regions = ends.map(of);
         for (facet, bounds) in own {
             let own = self.secondary.facet(facet);
             let normals = ends.map(|y| own.at(y, 0.0).normal);
             let mut window: Option<Window> = None;
-            for place in 0..self.order.len() {
+            for place in 0..order.len() {
                 let is_faced = |k: usize| regions[k][place].part_of(own, normals[k], ends[k]).is_some();
                 if is_faced(0) || is_faced(1) {
                     window.get_or_insert(Window { first: place, last: place }).last = place;

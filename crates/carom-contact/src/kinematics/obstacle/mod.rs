@@ -14,12 +14,14 @@
 
 mod corner;
 mod faceted;
+mod gap;
 mod near;
 mod path;
 mod polyline;
 
 pub(super) use corner::{AtCorner, CORNER_COSINE};
 pub use faceted::Faceted;
+pub(super) use gap::ObstacleGap;
 use near::Entry;
 pub use near::Tip;
 pub(super) use near::{Near, Point, dot};

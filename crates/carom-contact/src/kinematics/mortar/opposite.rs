@@ -1,0 +1,239 @@
+//! What the secondary side of a mortar contact faces: a side of a body, or a rigid obstacle.
+
+use carom_algebra::Vector;
+
+use super::cut::{self, Facing, Opposed, Region};
+use crate::kinematics::NodeToObstacle;
+use crate::kinematics::facets::Facets;
+use crate::kinematics::gap::Gap;
+use crate::kinematics::obstacle::ObstacleGap;
+use crate::kinematics::projection::Facet;
+use crate::kinematics::surface::Surface;
+use crate::pair::{ContactError, Pair};
+use crate::places::Places;
+
+/// What the secondary side faces.
+#[derive(Debug)]
+pub(super) enum Opposite {
+    Side(Primary),
+    Obstacle(NodeToObstacle),
+}
+
+/// The primary side.
+#[derive(Debug)]
+pub(super) struct Primary {
+    pub(super) surface: Surface,
+    /// Facets, each followed by the next one along the side if there is one.
+    pub(super) order: Vec<usize>,
+    /// Place of each facet in `order`.
+    pub(super) place: Vec<usize>,
+}
+
+/// Gap of a point of the secondary side, with its derivatives by the point and the nodes opposite.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum PointGap {
+    Facet(Gap, usize),
+    Obstacle(ObstacleGap),
+}
+
+impl Primary {
+    pub(super) fn new(surface: Surface) -> Self {
+        let order = along(&surface);
+        let mut place = vec![0; surface.all()];
+        order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
+        Self { surface, order, place }
+    }
+
+    /// Facets with their regions at positions `y`.
+    fn regions(&self, facets: &[usize], y: Places) -> Vec<(usize, Region)> {
+        facets.iter().map(|&facet| (facet, Region::of(&self.surface, facet, y))).collect()
+    }
+}
+
+impl Opposite {
+    /// Global numbers of the nodes on which the gap over a facet depends beside the point: those of
+    /// the facet, or of the carrier of the obstacle.
+    pub(super) fn nodes(&self, facet: usize) -> &[usize] {
+        match self {
+            Self::Side(primary) => primary.surface.facet(facet).nodes,
+            Self::Obstacle(obstacle) => obstacle.carriers(),
+        }
+    }
+
+    /// Global numbers of all nodes of the opposite side.
+    pub(super) fn all_nodes(&self) -> &[usize] {
+        match self {
+            Self::Side(Primary { surface, .. }) => &surface.nodes[..surface.facets() * surface.shape.nodes()],
+            Self::Obstacle(obstacle) => obstacle.carriers(),
+        }
+    }
+
+    /// A pair of a multiplier with the whole opposite side; none if it has no facets.
+    pub(super) fn whole(&self, multiplier: usize) -> Option<Pair> {
+        match self {
+            Self::Side(Primary { order, .. }) => {
+                let first = *order.first()?;
+                Some(Pair { reach: order.len(), ..Pair::open(multiplier, first, 0.0) })
+            }
+            Self::Obstacle(_) => Some(Pair::open(multiplier, 0, 0.0)),
+        }
+    }
+
+    /// All facets of the opposite side; an obstacle counts as one, 0.
+    pub(super) fn facets(&self) -> &[usize] {
+        match self {
+            Self::Side(primary) => &primary.order,
+            Self::Obstacle(_) => &[0],
+        }
+    }
+
+    /// The facets of the window of a pair.
+    pub(super) fn window(&self, pair: &Pair) -> &[usize] {
+        match self {
+            Self::Side(primary) => primary.window(pair),
+            Self::Obstacle(_) => &[0],
+        }
+    }
+
+    /// Whether a facet belongs to the window of a pair.
+    pub(super) fn is_in_window(&self, pair: &Pair, facet: usize) -> bool {
+        match self {
+            Self::Side(primary) => primary.places_of(pair).contains(primary.place[facet]),
+            Self::Obstacle(_) => true,
+        }
+    }
+
+    /// Degree of the facets; 1 of an obstacle.
+    pub(super) fn degree(&self) -> usize {
+        match self {
+            Self::Side(primary) => primary.surface.shape().degree(),
+            Self::Obstacle(_) => 1,
+        }
+    }
+
+    /// A function that finds the part of a facet of the secondary side that faces `facets` at
+    /// positions `y`, with points of quadrature; `rule`: points and weights on −1 … 1.
+    pub(super) fn facing<'a>(
+        &'a self,
+        facets: &[usize],
+        rule: &'a [[f64; 2]],
+        y: Places<'a>,
+    ) -> impl Fn(Facet) -> Facing + 'a {
+        let regions = match self {
+            Self::Side(primary) => primary.regions(facets, y),
+            Self::Obstacle(_) => Vec::new(),
+        };
+        move |own| match self {
+            Self::Side(primary) => cut::facing(own, &primary.surface, &regions, rule, y),
+            Self::Obstacle(_) => Facing::whole(rule),
+        }
+    }
+
+    /// The gap of a point at a place; none at the centre of a circle, where no direction is
+    /// distinguished.
+    pub(super) fn gap(&self, point: &Opposed, place: Vector<2>, y: Places) -> Option<PointGap> {
+        match self {
+            Self::Side(primary) => {
+                let facet = primary.surface.facet(point.facet);
+                Some(PointGap::Facet(Gap::closest(facet, y, place, point.eta), facet.nodes.len()))
+            }
+            Self::Obstacle(obstacle) => {
+                let [x, z] = place.0;
+                obstacle.gap_of_point([x, z, 0.0], y.flat()).map(PointGap::Obstacle)
+            }
+        }
+    }
+}
+
+impl PointGap {
+    /// Gap g.
+    pub(super) fn distance(&self) -> f64 {
+        match self {
+            Self::Facet(gap, _) => gap.distance,
+            Self::Obstacle(gap) => gap.distance,
+        }
+    }
+
+    /// Outward normal of the opposite side.
+    pub(super) fn normal(&self) -> Vector<2> {
+        match self {
+            Self::Facet(gap, _) => gap.at.normal,
+            Self::Obstacle(gap) => flat(gap.direction()),
+        }
+    }
+
+    /// Number of the point and the nodes opposite.
+    pub(super) fn count(&self) -> usize {
+        match self {
+            Self::Facet(_, nodes) => 1 + nodes,
+            Self::Obstacle(gap) => gap.count,
+        }
+    }
+
+    /// Checks that the closest point is unique.
+    ///
+    /// # Errors
+    /// If it is not; `pair` and the representative node of its multiplier are named.
+    pub(super) fn unless_regular(&self, node: usize, pair: &Pair) -> Result<(), ContactError> {
+        match self {
+            Self::Facet(gap, _) => ContactError::unless_regular(node, pair, gap.a),
+            Self::Obstacle(_) => Ok(()),
+        }
+    }
+
+    /// Calls a function with the gradients of the gap by the point and by each node opposite.
+    pub(super) fn gradient(&self, of: impl FnMut((usize, Vector<2>))) {
+        match self {
+            Self::Facet(gap, nodes) => gap.gradient(*nodes).enumerate().for_each(of),
+            Self::Obstacle(gap) => gap.gradient().map(flat).enumerate().for_each(of),
+        }
+    }
+
+    /// Calls a function with the parts of the row of the slip of the point and of each node
+    /// opposite.
+    pub(super) fn slip(&self, of: impl FnMut((usize, Vector<2>))) {
+        match self {
+            Self::Facet(gap, nodes) => gap.slip(*nodes).enumerate().for_each(of),
+            Self::Obstacle(gap) => gap.row(gap.tangent()).map(flat).enumerate().for_each(of),
+        }
+    }
+
+    /// Second derivative of the gap by the point and the nodes opposite, two components each,
+    /// row-major.
+    pub(super) fn curvature_into(&self, matrix: &mut [f64]) {
+        match self {
+            Self::Facet(gap, nodes) => gap.curvature_into(*nodes, 2, matrix),
+            Self::Obstacle(gap) => gap.curvature_into(2, matrix),
+        }
+    }
+
+    /// Derivative of the row of the slip, a matrix as of [`curvature_into`](Self::curvature_into).
+    pub(super) fn slip_derivative_into(&self, matrix: &mut [f64]) {
+        match self {
+            Self::Facet(gap, nodes) => gap.slip_derivative_into(*nodes, matrix),
+            Self::Obstacle(gap) => gap.slip_derivative_into(2, gap.tangent(), matrix),
+        }
+    }
+}
+
+fn flat([x, y, _]: [f64; 3]) -> Vector<2> {
+    Vector([x, y])
+}
+
+/// The facets of a side that are surfaces, from the starts of its chains on.
+fn along(side: &Surface) -> Vec<usize> {
+    let mut order = Vec::new();
+    let mut seen = vec![false; side.facets()];
+    let is_start = |facet: &usize| side.neighbour_of_side(*facet, false).is_none();
+    // Loops, which have no start, come last.
+    let starts = (0..side.facets()).filter(is_start).chain(0..side.facets());
+    for start in starts.filter(|&facet| !side.is_mirror(facet)) {
+        let mut next = Some(start);
+        while let Some(facet) = next.filter(|&facet| !seen[facet]) {
+            seen[facet] = true;
+            order.push(facet);
+            next = side.neighbour_of_side(facet, true);
+        }
+    }
+    order
+}
