@@ -44,7 +44,7 @@ pub struct ContactSpec {
     /// Motion of a rigid obstacle.
     #[serde(default, skip_serializing_if = "ObstacleMotion::is_fixed")]
     pub motion: ObstacleMotion,
-    /// Discretisation of the contact. `mortar`: dimension 2, sides of two bodies, implicit schemes.
+    /// Discretisation of the contact. `mortar`: dimension 2, implicit schemes.
     #[key(default = "\"node-to-segment\"")]
     #[serde(default, skip_serializing_if = "Method::is_of_nodes")]
     pub method: Method,

@@ -2,7 +2,10 @@
 //! rigid motions, and what they integrate.
 
 use carom_algebra::{Vector, jacobian_error};
-use carom_contact::{BothSides, Detection, Kinematics, Mortar, NodeToFacet, Pair, Rows, Surface};
+use carom_contact::{
+    BothSides, Carrier, Detection, Kinematics, Mortar, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows,
+    Surface,
+};
 use carom_solid::FacetShape;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];
@@ -45,6 +48,18 @@ fn scene(shape: FacetShape, count: usize, gap: f64) -> Scene {
     Scene { contact: Mortar::new(secondary, primary, &y, sides), y }
 }
 
+/// A secondary side of three facets over a circle that is carried by a simplex and may turn.
+fn over_a_circle(shape: FacetShape) -> Scene {
+    let (above, mut y) = chain(shape, [-0.9, 0.8], 3, 0, |x| 0.05 - 0.2 * x * x);
+    let nodes = y.len() / 2;
+    let carrier = Carrier { nodes: (nodes..nodes + 3).collect(), origin: [0.3, -0.4, 0.0], length: 2.0 };
+    y.extend(carrier.places(2));
+    let side = Surface::new(shape, &above, &[1.0; 3]);
+    let circle = Obstacle::circle(&[0.0, -0.7], 0.7, false);
+    let obstacle = NodeToObstacle::new((0..nodes).collect(), 2, circle).carried_by(carrier);
+    Scene { contact: Mortar::with_obstacle(side, obstacle, &y), y }
+}
+
 impl Scene {
     fn pairs(&self) -> impl Iterator<Item = Pair> + '_ {
         (0..self.contact.secondary().len()).map(|node| Pair {
@@ -85,11 +100,11 @@ impl Scene {
     }
 }
 
-/// Under one facet nothing is cut, and the derivatives are exact.
+/// Over one facet and over an obstacle nothing is cut, and the derivatives are exact.
 #[test]
 fn derivatives_agree_with_differences() {
-    for shape in SHAPES {
-        let scene = scene(shape, 1, 0.3);
+    for (shape, is_rigid) in SHAPES.into_iter().flat_map(|shape| [(shape, false), (shape, true)]) {
+        let scene = if is_rigid { over_a_circle(shape) } else { scene(shape, 1, 0.3) };
         for pair in scene.pairs() {
             let gap = |y: &[f64]| vec![scene.row(&pair, y).row(0).gap];
             let error = jacobian_error(&scene.y, 1e-3, gap, &scene.gradient(&pair, &scene.y));
@@ -115,8 +130,9 @@ fn derivatives_agree_with_differences() {
 /// However the facets are cut, the forces on both sides are opposite and in line.
 #[test]
 fn force_and_moment_balance_and_rigid_motions_do_nothing() {
-    for (shape, count) in SHAPES.into_iter().flat_map(|shape| [1, 2, 5, 7].map(|count| (shape, count))) {
-        let scene = scene(shape, count, 0.02);
+    // Without facets of the primary: over an obstacle.
+    for (shape, count) in SHAPES.into_iter().flat_map(|shape| [0, 1, 2, 5, 7].map(|count| (shape, count))) {
+        let scene = if count == 0 { over_a_circle(shape) } else { scene(shape, count, 0.02) };
         let (s, c) = 0.7_f64.sin_cos();
         let turned = |x: &[f64]| [c * x[0] - s * x[1] + 5.0, s * x[0] + c * x[1] - 3.0];
         let moved: Vec<f64> = scene.y.chunks(2).flat_map(turned).collect();
