@@ -208,7 +208,7 @@ fn the_pressure_of_a_plane_wave_is_uniform() {
             [found.iter().copied().fold(f64::INFINITY, f64::min), found.iter().copied().fold(0.0, f64::max)];
         if !found.is_empty() {
             loaded += 1;
-            assert!(found.len() == 5 && most - least < 1e-12, "{found:?}");
+            assert!(found.len() >= 5 && most - least < 1e-12, "{found:?}");
         }
     }
     assert!(loaded > 40, "{loaded} steps in contact");
@@ -266,13 +266,8 @@ fn the_pressure_stays_bounded_while_the_cover_slides() {
             let force = sim.state().contact_forces[0][1].abs();
             let largest = found.iter().map(|row| row.pressure).fold(0.0, f64::max);
             // The mean pressure is the force over the width of 1.
-            println!(
-                "{swapped} {:.3} {:.3} rows {} max gap-row {:?}",
-                sim.state().time,
-                largest / force,
-                found.len(),
-                found.iter().map(|r| (r.node, r.multiplier, r.pressure)).collect::<Vec<_>>()
-            );
+            // The mean pressure is the force over the width of 1; a corner carries a quarter of it.
+            assert!(largest < 5.0 * force, "{largest} of a mean of {force} at {}", sim.state().time);
             if sim.state().time > 0.099 {
                 forces.push(force);
             }
