@@ -265,7 +265,6 @@ fn the_pressure_stays_bounded_while_the_cover_slides() {
             let found = rows.contact(&sim);
             let force = sim.state().contact_forces[0][1].abs();
             let largest = found.iter().map(|row| row.pressure).fold(0.0, f64::max);
-            // The mean pressure is the force over the width of 1.
             // The mean pressure is the force over the width of 1; a corner carries a quarter of it.
             assert!(largest < 5.0 * force, "{largest} of a mean of {force} at {}", sim.state().time);
             if sim.state().time > 0.099 {
