@@ -18,7 +18,7 @@ STEP = 1.875e-3
 SCHEMES = {
     "ρ∞ = 0.1": '{ kind = "chung-hulbert", rho_inf = 0.1 }',
     "ρ∞ = 0.6": '{ kind = "chung-hulbert", rho_inf = 0.6 }',
-    "trapezoidal": '{ kind = "trapezoidal" }',
+    "trapezoidal": '{ kind = "newmark" }',
 }
 METHODS = ("node-to-segment", "mortar")
 SAMPLES = 2000
@@ -36,12 +36,14 @@ def history(carom, out, level, method, scheme):
             "time.step": STEP / factor,
             "time.end": 0.6,
             "output.fields_every": 0,
+            "body.cylinder.mesh.size": 0.1 / factor,
+            "body.prism.mesh.cells": [8 * factor, 4 * factor],
             "probe.B.record": '["uy", "sigma_yy"]',
         }
-        command = [carom, "run", case, "--out", out, "--refine", str(factor)]
+        command = [carom, "run", case, "--out", out]
         for key, value in sets.items():
             command += ["--set", f"{key}={value}"]
-        subprocess.run(command, check=False, capture_output=True)
+        subprocess.run(command, check=True, capture_output=True)
     with open(out / "history.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     return [float(row["time"]) for row in rows], [float(row["B.sigma_yy"]) for row in rows]
