@@ -18,7 +18,7 @@ STEP = 1.875e-3
 SCHEMES = {
     "ρ∞ = 0.1": '{ kind = "chung-hulbert", rho_inf = 0.1 }',
     "ρ∞ = 0.6": '{ kind = "chung-hulbert", rho_inf = 0.6 }',
-    "trapezoidal": '{ kind = "newmark" }',
+    "trapezoidal": '{ kind = "newmark", beta = 0.25, gamma = 0.5 }',
 }
 METHODS = ("node-to-segment", "mortar")
 SAMPLES = 2000
