@@ -275,7 +275,7 @@ fn sensitivity(name: &str) -> Sensitivity {
             "",
             "contact_episodes" | "impulse_x" | "impulse_y" | "impulse_z" | "energy_created" | "friction_lost"
             | "slip_distance" | "stick_share" | "penetration" | "steps" | "newton_iterations"
-            | "rejected_steps" | "factorisations",
+            | "rejected_steps" | "factorisations" | "cost",
         ) => Sensitivity::None,
         ("", "contact_start" | "contact_end" | "turning_time" | "apex_time") => Sensitivity::Instant(1.0),
         ("", "contact_duration") => Sensitivity::Instant(2.0),
