@@ -11,9 +11,12 @@
 use super::samples::{at, integral};
 
 /// Least and largest number of equal parts of the span that norms are sums over.
-const PARTS: (f64, f64) = (4096.0, 65_536.0);
+const PARTS: (f64, f64) = (4099.0, 65_537.0);
 /// Parts of a window.
 const PER_WINDOW: f64 = 8.0;
+/// Parts of a row; no simple fraction, so that an oscillation from row to row is seen at all
+/// phases.
+const PER_ROW: f64 = 1.373;
 
 /// Components of a vector quantity over time, with their integrals.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +24,8 @@ pub struct Signal<'a> {
     times: &'a [f64],
     values: Vec<&'a [f64]>,
     integrals: Vec<Vec<f64>>,
+    /// Whether the integrals were recorded: their rate is then constant between rows.
+    recorded: bool,
 }
 
 /// Norms of a difference of two signals.
@@ -44,13 +49,26 @@ impl<'a> Signal<'a> {
     /// A signal that is integrated with the trapezoidal rule.
     pub fn of(times: &'a [f64], values: Vec<&'a [f64]>) -> Self {
         let integrals = values.iter().map(|x| integral(times, x)).collect();
-        Self { times, values, integrals }
+        Self { times, values, integrals, recorded: false }
     }
 
     /// A signal whose integrals were recorded, one per component.
     #[must_use]
     pub fn with_integrals(self, integrals: Vec<Vec<f64>>) -> Self {
-        Self { integrals, ..self }
+        Self { integrals, recorded: true, ..self }
+    }
+
+    /// Integral of a component up to a time; that of values is exact for values linear between
+    /// rows.
+    fn sum(&self, component: usize, time: f64) -> Option<f64> {
+        let sums = &self.integrals[component];
+        if self.recorded {
+            return at(self.times, sums, time);
+        }
+        let row = self.times.partition_point(|t| *t <= time).checked_sub(1)?;
+        let values = self.values[component];
+        let mean = f64::midpoint(values[row], at(self.times, values, time)?);
+        Some(sums[row] + mean * (time - self.times[row]))
     }
 
     /// Value and average of a component at a time; the window is cut at the ends of the record.
@@ -61,8 +79,7 @@ impl<'a> Signal<'a> {
         if to <= from {
             return Some([value; 2]);
         }
-        let sum = &self.integrals[component];
-        Some([value, (at(self.times, sum, to)? - at(self.times, sum, from)?) / (to - from)])
+        Some([value, (self.sum(component, to)? - self.sum(component, from)?) / (to - from)])
     }
 
     /// Distance from another signal with the same components; none if they have no span in common.
@@ -72,8 +89,9 @@ impl<'a> Signal<'a> {
         if last <= first || self.values.is_empty() || self.values.len() != other.values.len() {
             return None;
         }
-        let wanted = if window > 0.0 { PER_WINDOW * (last - first) / window } else { 0.0 };
-        let parts = wanted.ceil().clamp(PARTS.0, PARTS.1);
+        let of_windows = if window > 0.0 { PER_WINDOW * (last - first) / window } else { 0.0 };
+        let of_rows = PER_ROW * self.times.len().max(other.times.len()) as f64;
+        let parts = of_windows.max(of_rows).ceil().clamp(PARTS.0, PARTS.1);
         let mut sums = [0.0; 2];
         for k in 0..parts as usize {
             let time = first + (k as f64 + 0.5) / parts * (last - first);
@@ -132,7 +150,7 @@ mod tests {
             let (times, values) = sampled(rows, |t| (64.0 * TAU * t).sin());
             let found = Signal::of(&times, vec![&values]).norms(2.0 / 64.0).unwrap();
             assert!((found.rough - 0.5_f64.sqrt()).abs() < 5e-3 && found.smooth < 0.03, "{found:?}");
-            let alternating: Vec<f64> = (0..=rows).map(|i| f64::from(1 - 2 * (i as i32 % 2))).collect();
+            let alternating: Vec<f64> = (0..=rows).map(|i| 1.0 - 2.0 * f64::from(i % 2)).collect();
             let found = Signal::of(&times, vec![&alternating]).norms(1.0 / 16.0).unwrap();
             assert!(found.smooth < 0.02 && (found.rough - (1.0_f64 / 3.0).sqrt()).abs() < 0.03, "{found:?}");
         }

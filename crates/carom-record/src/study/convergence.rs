@@ -31,7 +31,7 @@ pub(super) struct Converged {
 /// Range of orders that are taken as they are.
 const REGULAR: (f64, f64) = (0.95, 2.05);
 /// Safety factor without an observed order.
-const UNSAFE: f64 = 3.0;
+pub(super) const UNSAFE: f64 = 3.0;
 /// Share of the differences below which the last one is round-off.
 const SETTLED: f64 = 1e-9;
 

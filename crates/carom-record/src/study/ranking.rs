@@ -152,7 +152,8 @@ impl Ranks<'_> {
     fn apart(&self, arm: usize) -> Option<Apart> {
         let of = |run: usize| {
             let row = &self.rows[run];
-            let which = if run == arm { String::new() } else { format!("{}: ", self.manifest.run(run).name) };
+            let member = self.manifest.run(run).role.member.zip(self.manifest.ensemble.as_ref());
+            let which = member.map_or_else(String::new, |(of, all)| format!("{}: ", all.name(&of.member)));
             let why = match row.value("energy_created") {
                 _ if row.status == Some(Status::Failed) => {
                     format!("it stopped ({})", row.reason.as_deref().unwrap_or("no reason known"))

@@ -115,7 +115,7 @@ fn design(study: &Study) -> Markup {
         }
         @if !missed.is_empty() {
             p {
-                span.miss { "More than 10 % off the budget" } " (share of it in brackets), and not compared at equal cost: "
+                span.miss { "More than 10 % off the budget" } " (share of it in brackets): "
                 (missed.join("; ")) "."
             }
         }

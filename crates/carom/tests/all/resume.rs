@@ -288,15 +288,16 @@ fn sensitivity(name: &str) -> Sensitivity {
             | "apex"
             | "energy_lost"
             | "energy_drift"
+            | "energy_error"
             | "energy_lost_impact"
             | "dissipated_integrator"
             | "dissipated_contact",
         )
         | (_, "peak_mean")
-        | ("A.uy" | "B.uy", "min" | "max" | "variation") => Sensitivity::Value,
-        ("", "force_roughness" | "force_variation" | "force_high_frequency" | "penetration_mean")
+        | ("A.uy" | "B.uy", "min" | "max") => Sensitivity::Value,
+        ("", "force_roughness" | "force_high_frequency" | "penetration_mean")
         | (_, "roughness" | "high_frequency")
-        | ("C.sigma_yy", "min" | "max" | "variation") => Sensitivity::Shape,
+        | ("C.sigma_yy", "min" | "max") => Sensitivity::Shape,
         ("", "cpu_time" | "wall_time") => Sensitivity::Machine,
         _ => panic!("how does `{name}` depend on the rows?"),
     }
