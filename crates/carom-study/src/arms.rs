@@ -179,16 +179,17 @@ const BATHE: &str = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
 /// scheme and the second one, with twice the finest step. None if no steps fit its factors.
 pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Draft>> {
     let given: Vec<_> = file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect();
+    let placed = |scheme: &str| (scheme.to_owned(), "fine".to_owned());
     let own = given.iter().find(|(set, _)| set.starts_with("time.scheme"));
-    let own = own.map_or(CHUNG_HULBERT, |(set, _)| set.as_str());
-    let second = if own.contains("\"bathe\"") { CHUNG_HULBERT } else { BATHE };
+    let own = own.cloned().unwrap_or_else(|| placed(CHUNG_HULBERT));
+    let second = placed(if own.0.contains("\"bathe\"") { CHUNG_HULBERT } else { BATHE });
     let levels = levels_of_reference(file, case, step)?;
     let finest = levels.last()?;
-    let draft = |name: String, level: &Level, scheme: &str, check: bool| {
+    let draft = |name: String, level: &Level, scheme: &(String, String), check: bool| {
         let others = given.iter().filter(|(set, _)| !set.starts_with("time.scheme")).cloned();
         let mut sets = with_common(file, others.collect());
         sets.retain(|(set, _)| !set.starts_with("time.scheme"));
-        sets.push((scheme.to_owned(), "fine".to_owned()));
+        sets.push(scheme.clone());
         sets.push((format!("time.step={:?}", case.time.end / level.steps), "fine".to_owned()));
         if level.mesh != 1.0 {
             sets.push((format!("refine={:?}", case.refine * level.mesh), "fine.mesh".to_owned()));
@@ -201,11 +202,11 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Draft
         let times = (finest.steps / level.steps * 1e4).round() / 1e4;
         let on = if finest.mesh == 1.0 { String::new() } else { format!(", mesh {}", level.mesh) };
         let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt{on}") };
-        draft(name, level, own, false)
+        draft(name, level, &own, false)
     };
     let longer = Level { steps: (finest.steps / 2.0).ceil(), ..*finest };
-    let of_step = draft(format!("{FINE_NAME}, check of the step"), &longer, own, true);
-    let of_scheme = draft(format!("{FINE_NAME}, check of the scheme"), &longer, second, true);
+    let of_step = draft(format!("{FINE_NAME}, check of the step"), &longer, &own, true);
+    let of_scheme = draft(format!("{FINE_NAME}, check of the scheme"), &longer, &second, true);
     Some(levels.iter().map(run).chain([of_step, of_scheme]).collect())
 }
 

@@ -182,8 +182,9 @@ fn struck(striker: Bar, target: Bar, gap: f64, v: f64) -> Problem {
 /// A bar under gravity, of cases/bar/bouncing.toml.
 fn falling(element: &str, cells: usize) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/bar/bouncing.toml");
-    let text = std::fs::read_to_string(path).unwrap();
-    let text = text.split("[[expect]]").next().unwrap().replace("\"L2\"", &format!("\"{element}\""));
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text =
+        text.split("[[expect]]").next().unwrap_or_default().replace("\"L2\"", &format!("\"{element}\""));
     let mut case = String::new();
     for line in text.lines() {
         let line = match line.split_once(" = ").map(|(key, _)| key.trim()) {
@@ -372,7 +373,7 @@ impl Trials {
     fn add(&mut self, what: &str, study: &Study, errors: &[(usize, f64)]) {
         let cost = |arm: usize| study.rows[arm].value("cost").unwrap_or(f64::INFINITY);
         let least = |arms: &mut dyn Iterator<Item = f64>| arms.fold(f64::INFINITY, f64::min);
-        let ranking = study.ranking.as_ref().unwrap();
+        let Some(ranking) = &study.ranking else { return };
         let Ok(verdict) = &ranking.verdict else {
             let mut all: Vec<f64> = errors.iter().map(|(_, error)| *error).collect();
             all.sort_by(f64::total_cmp);

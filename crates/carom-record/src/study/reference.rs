@@ -4,9 +4,9 @@
 //! computed    runs at decreasing steps on finer meshes; each level is run with every member of the study's
 //!             ensemble. Value: the median of the members at the finest level. Uncertainty: that of the
 //!             refinement (convergence.rs) of a member, the median over the members, at least the distance to a
-//!             second scheme and the change of the last halving of the step on the same mesh, and without members
-//!             that of the order one; plus the largest distance of a member from the median, plus the step of the
-//!             level before for an event (half a step if members differ in phase), plus 5/4 of what averaging over a short time changes, for extremes (metrics/averaged.rs)
+//!             second scheme and the change of the last halving of the step on the same mesh; plus the largest
+//!             distance of a member from the median, plus the step of the level before for each event, plus 5/4 of
+//!             what averaging over a short time changes, for extremes (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in step and refinement
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 
 use carom_formula::Formula;
 
-use super::convergence::{UNSAFE, converged};
+use super::convergence::converged;
 use super::digits::short;
 use super::ensemble::Spread;
 use super::groups::{Group, Kind, groups};
@@ -353,27 +353,14 @@ impl Reference {
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
         let refined = self.refined_members(name).map_or(found.uncertainty, |of_members| of_members.median());
-        // Whether an order above one is steady, members show; a single run may have it by accident.
-        let first_order = || {
-            self.levels
-                .len()
-                .checked_sub(2)
-                .and_then(|last| converged(&self.sizes()[last..], &medians[last..]))
-        };
-        let is_alone = self.levels.last().is_some_and(|level| level.members.len() == 1);
-        let least = first_order().filter(|_| is_alone).map_or(0.0, |found| SAFE / UNSAFE * found.uncertainty);
         let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
         let checks = self.checks.iter().filter_map(|run| Some((run.value(name)? - single?).abs()));
-        let refined = checks.fold(refined.max(least), f64::max);
+        let refined = checks.fold(refined, f64::max);
         let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
-        // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one,
-        // which is at most half a step more than the spread of the phases, (n − 1)/2n. Without
-        // phases, the difference of two levels is known up to the longer one of their steps.
-        let late = match &self.levels[..] {
-            [.., before, last] if last.phases == 1 => before.step,
-            [.., last] => last.step / 2.0,
-            [] => 0.0,
-        };
+        // An event is late by up to a step at each level: the difference of two levels is known up
+        // to the longer one of their steps.
+        let before = self.levels.len().saturating_sub(2);
+        let late = self.levels.get(before).map_or(0.0, |level| level.step);
         let events = INSTANTS.iter().find(|(instant, _)| *instant == name).map_or(0.0, |(_, events)| *events);
         let instant = events * late;
         let averaged =
@@ -525,8 +512,7 @@ mod tests {
     }
 
     /// By hand: the medians 1.4, 1.2, 1.1 are those of the first member and would be uncertain by
-    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by
-    /// 1.25 · 0.2/1.5.
+    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by 1.25 · 0.2.
     #[test]
     fn every_member_is_refined_alone() {
         let level = |step: f64, values: [f64; 3]| Level {
@@ -538,13 +524,12 @@ mod tests {
         let levels = [(4.0, [1.4, 1.3, 1.8]), (2.0, [1.2, 1.2, 1.3]), (1.0, [1.1; 3])];
         let levels = levels.map(|(step, values)| level(step, values)).into();
         let found = Reference::of_levels(String::new(), levels).estimate("m").unwrap();
-        assert!((found.uncertainty - 0.25 / 1.5).abs() < 1e-9, "{found:?}");
+        assert!((found.uncertainty - 0.25).abs() < 1e-9, "{found:?}");
     }
 
     /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and by
-    /// the step 2 of the level before; half of the step 1 where phases are known, not where roles
-    /// or meshes are swapped only. Members 0.2 before and after the median add 0.2, and 3/2 of that
-    /// if they are three phases.
+    /// the step 2 of the level before. Members 0.2 before and after the median add 0.2, and 3/2 of
+    /// that if they are three phases.
     #[test]
     fn instants_are_late() {
         let of = |phases: usize, finest: &[f64]| {
@@ -559,7 +544,7 @@ mod tests {
         };
         assert!((of(1, &[1.1]) - 2.125).abs() < 1e-9);
         assert!((of(1, &[1.1, 0.9, 1.3]) - 2.325).abs() < 1e-9);
-        assert!((of(3, &[1.1, 0.9, 1.3]) - 0.925).abs() < 1e-9);
+        assert!((of(3, &[1.1, 0.9, 1.3]) - 2.425).abs() < 1e-9);
     }
 
     /// By hand: averaging changes the peak of the finest run from 1.1 to 0.9; 5/4 of that is 0.25.

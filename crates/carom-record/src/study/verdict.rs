@@ -93,7 +93,7 @@ impl<'a> Field<'a> {
             let is_as_good = other.error <= ranked.error && other.cost <= ranked.cost;
             is_as_good && (other.error < ranked.error || other.cost < ranked.cost)
         };
-        !self.ranked.iter().any(|other| beats(&other))
+        !self.ranked.iter().any(beats)
     }
 
     /// Arms of other methods that cost no more than an arm, up to what counts as equal.
