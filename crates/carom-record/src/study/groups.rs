@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::trajectory::Trajectory;
 use crate::metrics::Signal;
 
-/// What a group of columns is.
+/// Kind of a group of columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Displacements or positions of the centre.
@@ -20,7 +20,7 @@ pub enum Kind {
 /// Columns with one scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// What the columns are.
+    /// Kind of the quantity.
     pub kind: Kind,
     /// Name in words.
     pub name: String,
