@@ -167,13 +167,13 @@ impl Apart {
     }
 }
 
-/// Uncertainties that are small enough to be used.
+/// Uncertainties, if the first one, that of the window itself, is small enough to be used.
 fn is_resolved(bounds: Vec<f64>) -> Result<Vec<f64>, Reason> {
-    match bounds.iter().find(|bound| **bound > RESOLVED) {
-        None => Ok(bounds),
-        Some(bound) => {
+    match bounds.first() {
+        Some(bound) if *bound > RESOLVED => {
             Err(format!("its uncertainty, {} of its norm, is more than half of it", short(*bound)).into())
         }
+        _ => Ok(bounds),
     }
 }
 
