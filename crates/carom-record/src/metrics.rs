@@ -12,6 +12,7 @@ mod averaged;
 mod book;
 mod column;
 mod compare;
+mod cost;
 mod definition;
 mod episode;
 mod evaluated;
@@ -26,6 +27,7 @@ mod pressure;
 mod rebound;
 mod run_table;
 mod samples;
+mod signal;
 mod striker;
 mod table;
 
@@ -34,8 +36,9 @@ pub use crate::units::Unit;
 pub use averaged::of_averages;
 pub use book::book_table;
 pub use compare::{deviation, phase_shift};
+pub use cost::{KERNELS, Kernel, cost};
 pub use definition::Metric;
-pub use episode::{Episode, default_bridge, episodes, first_episode};
+pub use episode::{Episode, default_bridge, episodes, first_episode, window};
 pub use evaluated::{all, of_measured, of_rebound, of_run, of_run_beside, probe_columns};
 pub(crate) use evaluated::{of_any_column, of_columns, of_no_column};
 pub use file::write;
@@ -48,6 +51,7 @@ pub use overlay::overlays;
 pub use rebound::Impact;
 pub(crate) use run_table::{PRESSURE, WORK};
 pub(crate) use samples::{at, extreme};
+pub use signal::{Distance, Signal};
 pub use striker::striker;
 
 #[cfg(test)]

@@ -43,8 +43,23 @@ pub(crate) fn too_many(file: &StudyFile, text: usize) -> Option<Problem> {
     Some(Problem::new("grid", what, why, help).of_system())
 }
 
-/// All arms in their order. The last key of the grid varies fastest.
+/// All arms in their order.
 pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
+    let methods = methods(file);
+    if file.design.is_some() { levels(&methods, file) } else { methods }
+}
+
+/// The method whose cost others are matched to: the one that the study names, or the first by name
+/// of those without a step of their own, so that the order of the arms does not matter.
+pub(crate) fn cost_of(file: &StudyFile) -> Option<String> {
+    let has_own_step = |draft: &Draft| draft.sets.iter().any(|(set, _)| sets_step(set));
+    let by_step = methods(file).into_iter().filter(|draft| !draft.role.by_cost);
+    let first = by_step.min_by_key(|draft| (has_own_step(draft), draft.name.clone()));
+    file.cost_of.clone().or_else(|| Some(first?.name))
+}
+
+/// The arms of the file and the combinations of its grid, the last key of which varies fastest.
+fn methods(file: &StudyFile) -> Vec<Draft> {
     let mut drafts: Vec<Draft> = Vec::new();
     for (i, arm) in file.arms.iter().enumerate() {
         let path = format!("arm[{i}]");
@@ -83,7 +98,7 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
             role: Role::default(),
         });
     }
-    if file.design.is_some() { levels(&drafts, file) } else { drafts }
+    drafts
 }
 
 /// Every method of a design at each level, or at its own step if no steps are given. For a method
@@ -91,13 +106,13 @@ pub(crate) fn all(file: &StudyFile) -> Vec<Draft> {
 /// scaled with the steps of the levels for the others.
 fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     let steps = &file.steps;
-    let cost_of = file.cost_of.as_ref().or(methods.first().map(|m| &m.name));
+    let cost_of = cost_of(file);
     let at = |(method, level): (&Draft, usize)| {
         let role = Role { method: Some(method.name.clone()), level, ..method.role.clone() };
         let Some(step) = steps.get(level) else { return Draft { role, ..method.clone() } };
         let mut sets = method.sets.clone();
-        let costed =
-            (file.design == Some(Kind::MatchedCost) || method.role.by_cost) && cost_of != Some(&method.name);
+        let costed = (file.design == Some(Kind::MatchedCost) || method.role.by_cost)
+            && cost_of.as_ref() != Some(&method.name);
         let own = sets.iter().find_map(|(set, _)| set.strip_prefix("time.step=")?.trim().parse::<f64>().ok());
         // The step of the level replaces the method's own step.
         sets.retain(|(set, _)| !sets_step(set));
@@ -122,13 +137,24 @@ pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
     file.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
 }
 
-/// Steps and mesh factors of the computed reference, the coarsest first. The finest step is at most
-/// `step` over `refine`. Without factors, the others are twice and four times as long, on the given
-/// mesh; with them, steps and cells are in the same ratios. All steps divide `end`; none if no
-/// number of steps fits the factors.
-fn levels_of_reference(file: &StudyFile, step: f64, end: f64) -> Option<Vec<(f64, f64)>> {
-    let least = (end / step * file.fine.refine as f64 * (1.0 - 1e-9)).ceil();
-    let factors = if file.fine.mesh.is_empty() { vec![1.0, 2.0, 4.0] } else { file.fine.mesh.clone() };
+/// Step and mesh factor of a level of the computed reference.
+struct Level {
+    /// Number of steps to the end.
+    steps: f64,
+    mesh: f64,
+}
+
+/// Levels of the computed reference, the coarsest first. The finest step is at most `step` over
+/// `refine`. Steps and cells are in the ratios of the mesh factors; for a mesh that is not to be
+/// refined, the steps are those of the factors 1, 2 and 4. None if no number of steps fits them.
+fn levels_of_reference(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Level>> {
+    let least = (case.time.end / step * file.fine.refine as f64 * (1.0 - 1e-9)).ceil();
+    let is_one_mesh = file.fine.mesh == [1.0];
+    let factors: &[f64] = match &file.fine.mesh[..] {
+        [] if case.dimension > 1 => &[1.0, 2.0],
+        [] | [_] => &[1.0, 2.0, 4.0],
+        given => given,
+    };
     let finest = factors[factors.len() - 1];
     let fits = |steps: &f64| {
         factors.iter().all(|factor| {
@@ -137,37 +163,51 @@ fn levels_of_reference(file: &StudyFile, step: f64, end: f64) -> Option<Vec<(f64
         })
     };
     let steps = (0..10_000).map(|more| least + f64::from(more)).find(fits)?;
-    let level = |factor: &f64| {
-        let mesh = if file.fine.mesh.is_empty() { 1.0 } else { *factor };
-        (end / (steps * factor / finest).round(), mesh)
+    let level = |factor: &f64| Level {
+        steps: (steps * factor / finest).round(),
+        mesh: if is_one_mesh { 1.0 } else { *factor },
     };
     Some(factors.iter().map(level).collect())
 }
 
-/// The runs of the computed reference, the coarsest first; none if no steps fit its factors.
-/// `refine`: refinement of the case's meshes.
-pub(crate) fn fine(file: &StudyFile, step: f64, end: f64, refine: f64) -> Option<Vec<Draft>> {
-    let default =
-        || vec![("time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }".to_owned(), "fine".to_owned())];
-    let levels = levels_of_reference(file, step, end)?;
-    let finest = levels.last()?.0;
-    let run = |&(step, mesh): &(f64, f64)| {
-        let mut sets = with_common(file, file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect());
-        if !file.fine.set.iter().any(|(key, _)| key.starts_with("time.scheme")) {
-            sets.extend(default());
+/// Schemes of the computed reference: its own, if none is given, and the second one; if that is
+/// given, the other way round.
+const CHUNG_HULBERT: &str = "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }";
+const BATHE: &str = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
+
+/// The runs of the computed reference, the coarsest first, and two checks on its finest mesh: its
+/// scheme and the second one, with twice the finest step. None if no steps fit its factors.
+pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Draft>> {
+    let given: Vec<_> = file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect();
+    let placed = |scheme: &str| (scheme.to_owned(), "fine".to_owned());
+    let own = given.iter().find(|(set, _)| set.starts_with("time.scheme"));
+    let own = own.cloned().unwrap_or_else(|| placed(CHUNG_HULBERT));
+    let second = placed(if own.0.contains("\"bathe\"") { CHUNG_HULBERT } else { BATHE });
+    let levels = levels_of_reference(file, case, step)?;
+    let finest = levels.last()?;
+    let draft = |name: String, level: &Level, scheme: &(String, String), check: bool| {
+        let others = given.iter().filter(|(set, _)| !set.starts_with("time.scheme")).cloned();
+        let mut sets = with_common(file, others.collect());
+        sets.retain(|(set, _)| !set.starts_with("time.scheme"));
+        sets.push(scheme.clone());
+        sets.push((format!("time.step={:?}", case.time.end / level.steps), "fine".to_owned()));
+        if level.mesh != 1.0 {
+            sets.push((format!("refine={:?}", case.refine * level.mesh), "fine.mesh".to_owned()));
         }
-        sets.push((format!("time.step={step:?}"), "fine".to_owned()));
-        if mesh != 1.0 {
-            sets.push((format!("refine={:?}", refine * mesh), "fine.mesh".to_owned()));
-        }
-        let times = (step / finest * 1e4).round() / 1e4;
-        let on = if file.fine.mesh.is_empty() { String::new() } else { format!(", mesh {mesh}") };
-        let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt{on}") };
-        let role = Role { fine: true, ..Role::default() };
+        let role = Role { fine: true, check, ..Role::default() };
         let expect = ("expect=[]".to_owned(), "fine".to_owned());
         Draft { name, path: "reference".into(), sets, case: None, expect, role }
     };
-    Some(levels.iter().map(run).collect())
+    let run = |level: &Level| {
+        let times = (finest.steps / level.steps * 1e4).round() / 1e4;
+        let on = if finest.mesh == 1.0 { String::new() } else { format!(", mesh {}", level.mesh) };
+        let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt{on}") };
+        draft(name, level, &own, false)
+    };
+    let longer = Level { steps: (finest.steps / 2.0).ceil(), ..*finest };
+    let of_step = draft(format!("{FINE_NAME}, check of the step"), &longer, &own, true);
+    let of_scheme = draft(format!("{FINE_NAME}, check of the scheme"), &longer, &second, true);
+    Some(levels.iter().map(run).chain([of_step, of_scheme]).collect())
 }
 
 /// The members of an arm's ensemble, except for itself, with the changes that make them from the
@@ -216,7 +256,8 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
             Draft { name, sets, expect: ("expect=[]".to_owned(), "ensemble".to_owned()), ..draft.clone() },
         )
     };
-    ensemble.members().into_iter().skip(1).filter(possible).map(member).collect()
+    let members = if draft.role.check { Vec::new() } else { ensemble.members() };
+    members.into_iter().skip(1).filter(possible).map(member).collect()
 }
 
 /// Overrides of an arm: those of all arms, except for keys that `own` replaces, followed by `own`.

@@ -38,15 +38,20 @@ pub(crate) struct StudyFile {
     #[key(Numbers(POSITIVE), optional = "[1e-3, 5e-4]")]
     pub(crate) steps: Vec<f64>,
     /// The method whose cost the others are matched to, with matched cost or `match = "cost"`.
-    /// Default: the first one.
+    /// Default: the first by name of those without a step of their own.
     #[key(example = "\"hht\"")]
     pub(crate) cost_of: Option<String>,
     /// Goal by which the arms are ranked.
     #[key(example = "\"force\"")]
     pub(crate) goal: Option<Goal>,
-    /// Required accuracy: the largest acceptable error. Default: 0.05.
+    /// Required accuracy: the largest acceptable error, its uncertainty included. Default: none,
+    /// and 0.05 for the goal `cost`.
     #[key(Number(POSITIVE), example = "0.05")]
     pub(crate) accuracy: Option<f64>,
+    /// Time over which contact forces and stresses are averaged. Default: 1/16 of the longest
+    /// closed interval of contact of the reference.
+    #[key(Number(POSITIVE), example = "1e-3")]
+    pub(crate) window: Option<f64>,
     /// The arm that the others are compared with, "exact" for the formulas of [exact], or "fine"
     /// for a computed reference.
     #[key(example = "\"fine\"")]
@@ -87,8 +92,8 @@ pub(crate) struct Fine {
     #[key(Count(1), default = "8")]
     pub(crate) refine: usize,
     /// Factors by which its meshes are finer than that of the case, one for each run, the coarsest
-    /// first; the steps shrink by the same factors, down to the finest one. Default: three steps,
-    /// each half of the one before, on the given mesh.
+    /// first; the steps shrink by the same factors, down to the finest one. Default: 1 and 2, and 4
+    /// in one dimension. With 1 alone, only the steps are refined, and nothing is established.
     #[key(Numbers(FACTOR), optional = "[1, 2, 4]", with = factors)]
     pub(crate) mesh: Vec<f64>,
 }

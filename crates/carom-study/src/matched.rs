@@ -1,28 +1,24 @@
-//! Steps at which methods have the same cost. The cost of a run is counted, not timed: Newton
-//! iterations and factorisations (steps, for schemes without either), each weighted by the
-//! processor seconds that one of them took in the first pilot run of the method.
+//! Steps at which methods have the same counted cost (`carom_record::metrics::KERNELS`).
 //!
 //! ```text
-//! cost = c_n · Newton iterations + c_f · factorisations        or  c_s · steps
-//! Δt = end/N,  N ← N · (budget/cost)^{1/p},  cost ∝ Nᵖ          until the cost is within 5 % of the budget: that of `cost_of` at the level
+//! Δt = end/N,  N ← N · budget/cost                  until two trials bracket the budget, that of `cost_of` at the level
+//! N between them, interpolated in logarithms        until the cost is within 5 % of the budget, or N has no neighbour left
 //! ```
 //!
-//! p is 1 at first, and then follows from two trials: those on either side of the budget, or the
-//! last two. It must be estimated: longer steps need more iterations each, so the cost of a
-//! composite scheme may grow only as the cube root of N. A budget between the costs of two
-//! successive numbers of steps cannot be met; the cost that was reached is in `study.json` and on
-//! the page.
+//! Longer steps need more iterations each, so that the cost may grow much slower than N. A budget
+//! between the costs of two successive numbers of steps cannot be met; the cost that was reached is
+//! in `study.json` and on the page.
 //!
-//! Counts are reproducible on every machine. The weights are measured once and stored with every
-//! trial in `pilots/ARM/pilot.json`, so that a resumed study has the same steps. A pilot is a
-//! complete run, because contact costs more than flight; the accepted one becomes the arm. The
-//! processor time that the arms really took is on the page.
+//! Counts are the same on every machine, and therefore the steps are. The trials are stored in
+//! `pilots/ARM/pilot.json`. A pilot is a complete run, because contact costs more than flight; the
+//! accepted one becomes the arm.
 
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
+use carom_record::metrics::cost;
 use carom_record::study::{Arm, StudyManifest, sets_step};
 use carom_record::{Manifest, RecordError, Status, json};
 use carom_run::case::Case;
@@ -36,61 +32,27 @@ use crate::jobs::{Ended, Event, side_by_side, threads};
 /// Relative difference from the budget at which a cost is accepted; the page states twice this.
 const CLOSE: f64 = 0.05;
 /// Largest number of pilot runs of an arm.
-const TRIALS: usize = 9;
+const TRIALS: usize = 12;
 /// Largest step, relative to that of the first pilot: beyond it most steps are rejected and
 /// bisected, so that the run has no definite step.
 const LONGEST: u64 = 16;
-/// Range of the power with which the cost grows with the number of steps.
-const POWERS: (f64, f64) = (0.25, 2.0);
-
-/// Processor seconds per iteration, factorisation or step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Weights {
-    newton: f64,
-    factorisation: f64,
-    step: f64,
-}
-
-impl Weights {
-    /// Weights from the timings and counters of a run.
-    fn of(manifest: &Manifest) -> Self {
-        let time = |name: &str| manifest.timings.get(name).copied().unwrap_or(0.0);
-        let newton = count(manifest, "newton");
-        let factorisations = count(manifest, "factorisations");
-        let phases: f64 = ["assembly", "contact", "factor", "solve"].map(time).iter().sum();
-        let share = if phases > 0.0 && factorisations > 0.0 { time("factor") / phases } else { 0.0 };
-        let cpu = time("cpu");
-        if newton == 0.0 {
-            return Self { step: cpu / count(manifest, "steps").max(1.0), ..Self::default() };
-        }
-        let factorisation = if factorisations > 0.0 { cpu * share / factorisations } else { 0.0 };
-        Self { newton: cpu * (1.0 - share) / newton, factorisation, step: 0.0 }
-    }
-
-    fn cost(self, manifest: &Manifest) -> f64 {
-        self.newton * count(manifest, "newton")
-            + self.factorisation * count(manifest, "factorisations")
-            + self.step * count(manifest, "steps")
-    }
-}
-
-fn count(manifest: &Manifest, name: &str) -> f64 {
-    manifest.counters.get(name).map_or(0.0, |n| *n as f64)
-}
+/// Largest factor of the number of steps from one trial to the next, without a bracket.
+const FACTOR: f64 = 4.0;
+/// Part of a bracket, in logarithms, that a trial within it leaves out at either end.
+const INNER: f64 = 0.1;
 
 /// A pilot run that ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Trial {
     /// Number of time steps.
     steps: u64,
-    /// Cost of the run in seconds; none if it did not reach its end.
+    /// Counted cost of the run; none if it did not reach its end.
     cost: Option<f64>,
 }
 
 /// Pilot runs of an arm, stored in `pilots/ARM/pilot.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Pilot {
-    weights: Option<Weights>,
     budget: Option<f64>,
     trials: Vec<Trial>,
     /// Index of the trial that was accepted.
@@ -119,29 +81,25 @@ impl Pilot {
             let next = (ran.min_by_key(|s| s.abs_diff(last.steps))? + last.steps).div_ceil(2);
             return (self.trials.len() < TRIALS && !tried(next)).then_some(next);
         }
-        // Steps of the trials, with the logarithms of cost over budget.
-        let off: Vec<(u64, f64)> =
-            self.trials.iter().filter_map(|t| Some((t.steps, (t.cost? / budget).ln()))).collect();
+        // Logarithms of the steps and of cost over budget.
+        let off = self.trials.iter().filter_map(|t| Some(((t.steps as f64).ln(), (t.cost? / budget).ln())));
         let nearest = |side: f64| {
-            let on_side = off.iter().filter(|t| t.1 * side > 0.0);
-            on_side.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).copied()
+            let on_side = off.clone().filter(|t| t.1 * side > 0.0);
+            on_side.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
         };
-        let below = nearest(-1.0);
-        let above = nearest(1.0);
-        let (steps, excess) = *off.iter().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        let (steps, excess) = off.clone().min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         if excess.exp_m1().abs() <= CLOSE || self.trials.len() >= TRIALS {
             return None;
         }
-        let power = |(a, b): ((u64, f64), (u64, f64))| (b.1 - a.1) / (b.0 as f64 / a.0 as f64).ln();
-        // Interpolated between two trials; extrapolated with a limited power.
-        let power = match (below.zip(above), &off[..]) {
-            (Some(pair), _) => power(pair),
-            (None, [.., a, b]) if a.0 != b.0 => power((*a, *b)).clamp(POWERS.0, POWERS.1),
-            _ => 1.0,
+        let wanted = match nearest(-1.0).zip(nearest(1.0)) {
+            Some((below, above)) => {
+                let share = below.1 / (below.1 - above.1);
+                below.0 + share.clamp(INNER, 1.0 - INNER) * (above.0 - below.0)
+            }
+            None => steps - excess.clamp(-FACTOR.ln(), FACTOR.ln()),
         };
-        let next = ((steps as f64 * (-excess / power).exp()).round() as u64).max(first.div_ceil(LONGEST));
-        let middle = below.zip(above).map(|(a, b)| u64::midpoint(a.0, b.0));
-        [Some(next), middle].into_iter().flatten().find(|next| !tried(*next))
+        let next = (wanted.exp().round() as u64).max(first.div_ceil(LONGEST));
+        (!tried(next)).then_some(next)
     }
 
     /// The trial whose cost is closest to the budget; the first one if none has a cost.
@@ -194,7 +152,7 @@ pub(crate) fn settle(
             return Ok(None);
         };
         let run = Manifest::read(&directory.join(&arm.directory))?;
-        Ok((run.status == Status::Finished).then(|| Weights::of(&run).cost(&run)))
+        Ok(Some(&run).filter(|run| run.status == Status::Finished).and_then(|run| cost(&run.counters)))
     };
     let levels = design.steps.len().max(1);
     let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
@@ -285,8 +243,7 @@ fn pilot(
             return Ok((ended, steps, None));
         }
         let run = Manifest::read(&path)?;
-        let weights = *pilot.weights.get_or_insert_with(|| Weights::of(&run));
-        let cost = (ended.status == Status::Finished).then(|| weights.cost(&run));
+        let cost = cost(&run.counters).filter(|_| ended.status == Status::Finished);
         pilot.trials.push(Trial { steps, cost });
         pilot.write(&folder)?;
     }
@@ -345,14 +302,14 @@ mod tests {
     }
 
     /// Twice the budget gives half the steps; within 5 % a trial is accepted; the closest one is
-    /// used. 20 and 14.14 grow as √N, so 10 needs a quarter of 400; between 7 and 20 the power is
-    /// ln(20/7)/ln 4 = 0.757; between successive numbers of steps there is no further trial.
+    /// used. Between 7 and 20 the cost grows as N^0.757, so that 10 needs 160 steps; between
+    /// successive numbers of steps there is no further trial.
     #[test]
     fn steps_follow_the_budget() {
         assert_eq!(pilot(&[]).next(400), Some(400));
         assert_eq!(pilot(&[(400, Some(20.0))]).next(400), Some(200));
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(10.4))]).next(400), None);
-        assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(14.142))]).next(400), Some(100));
+        assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(14.142))]).next(400), Some(141));
         assert_eq!(pilot(&[(400, Some(20.0)), (100, Some(7.0))]).next(400), Some(160));
         // At most sixteen times the first step.
         assert_eq!(pilot(&[(400, Some(200.0)), (40, Some(30.0))]).next(400), Some(25));
@@ -361,24 +318,6 @@ mod tests {
         assert_eq!(pilot(&[(400, Some(20.0)), (200, None)]).next(400), Some(300));
         assert_eq!(pilot(&[(400, None)]).next(400), None);
         assert_eq!(pilot(&[(400, Some(20.0)), (200, Some(12.0)), (166, None)]).closest(), 1);
-    }
-
-    /// 8 iterations with 4 factorisations in 2 s, a quarter of which was spent on factorisations:
-    /// 1.5/8 s and 0.5/4 s. Without iterations, seconds per step.
-    #[test]
-    fn weights_by_hand() {
-        let source = carom_record::Source::default();
-        let facts = carom_record::Facts::default();
-        let mut run = Manifest::new("0", facts, serde_json::Value::Null, source, Vec::new(), 1);
-        run.counters =
-            [("newton", 8), ("factorisations", 4), ("steps", 5)].map(|(n, c)| (n.to_owned(), c)).into();
-        run.timings =
-            [("cpu", 2.0), ("factor", 1.0), ("assembly", 3.0)].map(|(n, c)| (n.to_owned(), c)).into();
-        let weights = Weights::of(&run);
-        assert_eq!(weights, Weights { newton: 1.5 / 8.0, factorisation: 0.125, step: 0.0 });
-        assert_eq!(weights.cost(&run), 2.0);
-        run.counters.insert("newton".to_owned(), 0);
-        assert_eq!(Weights::of(&run), Weights { step: 0.4, ..Weights::default() });
     }
 
     /// 25 seconds in 500 steps, and in 501 with a phase. A budget that is met with 501 steps of the

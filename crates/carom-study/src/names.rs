@@ -41,11 +41,11 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
             "use one of them",
         ));
     }
-    let cost_of = file.cost_of.as_ref().or(drafts.first().and_then(|d| d.role.method.as_ref()));
+    let cost_of = file.cost_of.as_ref();
     for (i, arm) in file.arms.iter().enumerate().filter(|(_, arm)| arm.by_cost && Some(&arm.name) == cost_of)
     {
         let what = format!("\"{}\" cannot match its own cost", arm.name);
-        let why = "`match = \"cost\"` matches the cost of the arm `cost_of`, by default the first one, and this is that arm";
+        let why = "`match = \"cost\"` matches the cost of the arm `cost_of`, and this is that arm";
         let help = "give another arm in `cost_of`, or leave `match` out";
         problems.push(Problem::new(format!("arm[{i}].match"), what, why, help));
     }

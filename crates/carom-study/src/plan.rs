@@ -152,7 +152,7 @@ fn manifest(
     };
     let design = file.design.map(|kind| {
         let of = |level: usize| planned.iter().find(|p| p.draft.role.level == level && !p.draft.role.fine);
-        let cost_of = file.cost_of.clone().or_else(|| of(0)?.draft.role.method.clone()).unwrap_or_default();
+        let cost_of = arms::cost_of(&file).unwrap_or_default();
         let steps = if file.steps.is_empty() {
             of(0).map(|p| p.case.time.step).into_iter().collect()
         } else {
@@ -164,6 +164,7 @@ fn manifest(
         goal: file.goal.or(design.as_ref().map(|_| Goal::Trajectory)),
         design,
         accuracy: file.accuracy,
+        window: file.window,
         status: Status::Running,
         title: file.title.unwrap_or(stem),
         version: env!("CARGO_PKG_VERSION").into(),

@@ -135,7 +135,7 @@ impl<'s> Checked<'s> {
         if computed && planned.len() == count {
             let step = planned.iter().map(|p| p.case.time.step).fold(f64::INFINITY, f64::min);
             let first = &planned[0].case;
-            match arms::fine(file, step, first.time.end, first.refine) {
+            match arms::fine(file, first, step) {
                 Some(levels) => self.plan(file, levels, bases, &mut planned)?,
                 None => self.found.push(self.study.diagnose(&no_steps())),
             }

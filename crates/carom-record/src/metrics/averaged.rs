@@ -1,5 +1,5 @@
 //! Metrics after the contact force and the columns of probes have been averaged over a short time,
-//! 1/16 of the first contact episode. Extremes, total variation and roughness of a smooth signal
+//! 1/16 of the first contact episode. Extremes and roughness of a smooth signal
 //! hardly change by that. Behind a jump, such as a wave front, a computed signal overshoots by a
 //! fraction of the jump on every mesh (Gibbs), so that these metrics converge under refinement, but
 //! to wrong values; averaging removes most of the overshoot. What it changes is therefore a part of
@@ -12,9 +12,9 @@ use super::samples::{at, integral};
 use crate::{History, Run};
 
 /// Metrics of the contact force that depend on single rows.
-const OF_FORCE: [&str; 4] = ["peak_force", "force_roughness", "force_variation", "force_high_frequency"];
+const OF_FORCE: [&str; 3] = ["peak_force", "force_roughness", "force_high_frequency"];
 /// Metrics of a column that depend on single rows.
-const OF_COLUMN: [&str; 5] = ["min", "max", "roughness", "variation", "high_frequency"];
+const OF_COLUMN: [&str; 4] = ["min", "max", "roughness", "high_frequency"];
 
 /// The metrics that depend on single rows, of the averaged record; empty without a contact episode.
 pub fn of_averages(run: &Run) -> Vec<Metric> {

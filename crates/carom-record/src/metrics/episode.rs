@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::History;
+use crate::{History, Reason};
 
 /// Rows of an episode: the first one in contact, and the first one without contact after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,38 @@ pub fn episodes(history: &History, bridge: f64) -> Vec<Episode> {
         }
     }
     found
+}
+
+/// Largest ratio of the lengths of intervals of contact that one window fits.
+const UNEVEN: f64 = 4.0;
+
+/// Time over which forces and stresses of a record are averaged: 1/16 of its longest closed
+/// interval of contact, openings shorter than that bridged.
+///
+/// # Errors
+/// Contact never ends, or its intervals are too different for one window.
+pub fn window(history: &History) -> Result<f64, Reason> {
+    let times = history.times();
+    let closed = |bridge: f64| {
+        let found = episodes(history, bridge).into_iter();
+        found.filter_map(|episode| Some(times[episode.end?] - times[episode.start])).collect::<Vec<f64>>()
+    };
+    let longest = |lengths: &[f64]| lengths.iter().copied().fold(0.0, f64::max);
+    let first = longest(&closed(default_bridge(history))) / WINDOWS;
+    let lengths = closed(first);
+    let window = longest(&lengths) / WINDOWS;
+    if window <= 0.0 {
+        return Err(
+            "no contact of the reference begins and ends; give `window`, the time to average over".into()
+        );
+    }
+    if lengths.iter().any(|length| *length > 0.0 && UNEVEN * length < WINDOWS * window) {
+        return Err(
+            "intervals of contact of the reference differ by 4 : 1; give `window`, the time to average over"
+                .into(),
+        );
+    }
+    Ok(window)
 }
 
 /// The value of `bridge` for the named metrics: 2 % of the recorded time.

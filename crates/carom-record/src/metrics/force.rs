@@ -2,7 +2,6 @@
 //! them.
 //!
 //! ```text
-//! variation       TV = Σ |x_{n+1} − x_n|
 //! high frequency  1 − Σ_{|k| ≤ 16} |X_k|² / (N Σ x_n²),   X_k = Σ_n x_n exp(−2πi k n/N)       power above 16 cycles per episode (Parseval)
 //! chatter         Σ (activations + releases) / (time in contact)
 //! ```
@@ -11,7 +10,6 @@
 //! during contact has no power at high frequency, and a smooth pulse almost none.
 
 use super::given::Given;
-use super::samples::total_variation;
 
 /// Largest number of cycles per episode that counts as a low frequency.
 const CYCLES: usize = 16;
@@ -36,10 +34,6 @@ pub(super) fn high_frequency(samples: &[f64]) -> Option<f64> {
     let low = square(0) + 2.0 * (1..=CYCLES).map(square).sum::<f64>();
     // Only round-off can make it negative.
     Some(f64::max(0.0, 1.0 - low / (n as f64 * power)))
-}
-
-pub(super) fn variation(given: &Given) -> Option<f64> {
-    Some(total_variation(given.force().get(given.rows()?)?))
 }
 
 pub(super) fn high(given: &Given) -> Option<f64> {
@@ -92,9 +86,9 @@ mod tests {
     }
 
     /// Contact in rows 2 to 4 and 7, Δt = 0.5: the time in contact is 1.5 + 0.5, with three
-    /// activations and three releases. The force in the first episode is 0 4 1 4 0.
+    /// activations and three releases.
     #[test]
-    fn chatter_variation_and_depth_by_hand() {
+    fn chatter_and_depth_by_hand() {
         let column = |name: &str| Column {
             name: name.into(),
             unit: "u".into(),
@@ -114,7 +108,6 @@ mod tests {
         let metrics = all(&history);
         let of = |name: &str| metrics.iter().find(|m| m.name == name).unwrap();
         assert_eq!((of("chatter").value, of("chatter").unit.as_str()), (Some(3.0), "1/u"));
-        assert_eq!(of("force_variation").value, Some(4.0 + 3.0 + 3.0 + 4.0));
         assert_eq!(of("penetration_mean").value, Some(0.2));
         assert_eq!(of("force_high_frequency").value, None);
     }

@@ -27,10 +27,7 @@ const GROUPS: [Group; 7] = [
         names: &["impulse_x", "impulse_y", "impulse_z", "restitution", "apex", "apex_time"],
     },
     Group { title: "Peak of the contact force", names: &["peak_force", "peak_mean_force"] },
-    Group {
-        title: "Roughness of the contact force",
-        names: &["force_roughness", "force_variation", "force_high_frequency"],
-    },
+    Group { title: "Roughness of the contact force", names: &["force_roughness", "force_high_frequency"] },
     Group {
         title: "Energy",
         names: &[
@@ -38,6 +35,7 @@ const GROUPS: [Group; 7] = [
             "energy_lost_impact",
             "energy_created",
             "energy_drift",
+            "energy_error",
             "dissipated_integrator",
             "dissipated_contact",
         ],

@@ -46,6 +46,17 @@ pub(super) fn drift(given: &Given) -> Option<f64> {
     Some(changes.iter().fold(0.0, |most, x| f64::max(most, x.abs())) / scale)
 }
 
+/// Largest energy that time integrator and contact dissipated or created up to any time. Work of
+/// contact counts only where no obstacle moves: a moving one does work on the bodies, as a load.
+pub(super) fn by_scheme(given: &Given) -> Option<f64> {
+    let (_, scale) = changes(given.history)?;
+    let moves = given.run.is_some_and(|run| run.manifest.facts.contacts.iter().any(|contact| contact.moves));
+    let dissipation = given.history.column("dissipation")?;
+    let work = given.history.column("contact_work").filter(|_| !moves);
+    let lost = |row: usize| dissipation[row] - work.map_or(0.0, |work| work[row]);
+    Some((0..dissipation.len()).map(|row| lost(row).abs()).fold(0.0, f64::max) / scale)
+}
+
 /// Last value of a cumulative column, divided by the scale.
 fn share(given: &Given, column: &str) -> Option<f64> {
     Some(given.last(column)? / changes(given.history)?.1)
@@ -122,5 +133,6 @@ mod tests {
         assert_eq!((energy_lost_at(&history, 1), energy_lost_at(&history, 2)), (Some(0.1), Some(-0.025)));
         assert_eq!((energy_lost_at(&history, 3), energy_lost_at(&history, 0)), (None, None));
         assert_eq!(value("energy_lost_impact"), Some(0.1));
+        assert_eq!(value("energy_error"), Some(0.125));
     }
 }

@@ -1,6 +1,7 @@
 //! The tables of metrics that need more of a run than its history: case, contact rows, counters,
 //! timings.
 
+use super::cost::cost;
 use super::definition::{Definition, OWN, d};
 use super::given::Given;
 use super::pressure;
@@ -70,7 +71,7 @@ pub(crate) const PRESSURE: [Definition; 6] = [
 ];
 
 /// Metrics of the computational work.
-pub(crate) const WORK: [Definition; 6] = [
+pub(crate) const WORK: [Definition; 7] = [
     d("steps", Unit::None, "counter steps", OWN, "completed time steps", |g| count(g, "steps")),
     d("newton_iterations", Unit::None, "counter newton", OWN, "Newton iterations of all steps", |g| {
         count(g, "newton")
@@ -85,6 +86,14 @@ pub(crate) const WORK: [Definition; 6] = [
         OWN,
         "factorisations of linear systems, including those of the start and of projections",
         |g| count(g, "factorisations"),
+    ),
+    d(
+        "cost",
+        Unit::None,
+        "5 steps + 2 newton + 10 factorisations + linear_iterations",
+        OWN,
+        "counted cost, in evaluations of the internal forces; the same on every machine",
+        |g| cost(&g.run?.manifest.counters),
     ),
     d(
         "cpu_time",

@@ -5,7 +5,7 @@
 use super::column::{column_roughness, peak_of_means};
 use super::definition::{Definition, OWN, TABLES, VARIATION, d};
 use super::given::vector;
-use super::samples::{extreme, peak_mean, roughness, total_variation};
+use super::samples::{extreme, peak_mean, roughness};
 use super::striker::{apex, turning_time};
 use super::{force, ledger, oscillation};
 use crate::units::Unit;
@@ -88,14 +88,6 @@ pub(super) const HISTORY: [Definition; 27] = [
         |f| roughness(f.force().get(f.rows()?)?),
     ),
     d(
-        "force_variation",
-        Unit::Force,
-        "TV(|F|) over the first episode",
-        VARIATION,
-        "total variation of the contact force in the first episode",
-        force::variation,
-    ),
-    d(
         "force_high_frequency",
         Unit::None,
         "1 − Σ_{|k| ≤ 16} |F_k|²/(N Σ F_n²), F_k the discrete Fourier transform over the episode",
@@ -151,6 +143,14 @@ pub(super) const HISTORY: [Definition; 27] = [
         "Krenk 2006",
         "largest change of energy, up or down, at any time, divided by the largest kinetic + strain energy",
         ledger::drift,
+    ),
+    d(
+        "energy_error",
+        Unit::None,
+        "max |dissipation − contact_work|/E*; without contact_work where an obstacle moves",
+        OWN,
+        "largest energy that time integrator and contact dissipated or created up to any time, divided by the largest kinetic + strain energy; friction and loads do not count",
+        ledger::by_scheme,
     ),
     d(
         "energy_lost_impact",
@@ -219,7 +219,7 @@ pub(super) const HISTORY: [Definition; 27] = [
 ];
 
 /// Metrics of the column `C` of a probe, named `C:min` etc.
-pub(super) const COLUMNS: [Definition; 6] = [
+pub(super) const COLUMNS: [Definition; 5] = [
     d("min", Unit::Column, "min c", OWN, "smallest recorded value of the column", |f| {
         Some(extreme(f.values()?, f64::lt)?.1)
     }),
@@ -233,14 +233,6 @@ pub(super) const COLUMNS: [Definition; 6] = [
         VARIATION,
         "total variation divided by twice the range, minus 1, in the first contact episode; 0 for a single hump",
         column_roughness,
-    ),
-    d(
-        "variation",
-        Unit::Column,
-        "TV(c)",
-        VARIATION,
-        "total variation of the column in the first contact episode",
-        |f| Some(total_variation(f.values()?.get(f.rows()?)?)),
     ),
     d(
         "peak_mean",

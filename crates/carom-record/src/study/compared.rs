@@ -2,10 +2,11 @@
 //! phases before and after the first contact, and its delay.
 
 use super::arm::step;
+use super::groups::is_trajectory;
 use super::manifest::StudyManifest;
-use super::reference::{FORCE, Reference, Standing, Trajectory};
+use super::reference::{Reference, Standing, Trajectory};
 use crate::Reason;
-use crate::metrics::{self, phase_shift};
+use crate::metrics::{self, Distance, phase_shift};
 use crate::order::from_errors;
 
 /// Deviations of a column from that of the reference, relative to the range of the reference.
@@ -26,21 +27,11 @@ pub struct Deviated {
 pub struct Compared {
     /// Deviations of the columns of the arm.
     pub columns: Vec<Deviated>,
+    /// Distances in the groups of the reference, in their order, each for its windows and relative
+    /// to its scale; none if the arm lacks one of the columns.
+    pub groups: Vec<Option<Vec<Distance>>>,
     /// Name of the column whose phase was compared, and its delay in the unit of time.
     pub late: Option<(String, f64)>,
-}
-
-/// Whether a column is a displacement or the position of a centre.
-pub fn is_trajectory(column: &str) -> bool {
-    column
-        .rsplit('.')
-        .next()
-        .is_some_and(|q| ["ux", "uy", "uz", "center_x", "center_y", "center_z"].contains(&q))
-}
-
-/// Whether a column is a stress.
-pub fn is_stress(column: &str) -> bool {
-    column.rsplit('.').next().is_some_and(|q| q.starts_with("sigma_") || q == "von_mises")
 }
 
 impl Compared {
@@ -65,19 +56,19 @@ impl Compared {
             let late = phase_shift(&arm.times, arm.columns.get(&c.column)?, reference.column(&c.column)?)?;
             Some((c.column.clone(), late))
         });
-        Self { columns, late: main }
+        let right = reference.finest();
+        let groups = reference.known.iter().map(|known| {
+            let own = known.group.signal(arm)?;
+            let right = known.group.signal(right?)?;
+            let far = |window: &f64| Some(own.distance(&right, *window)?.relative_to(known.scale));
+            known.windows.iter().map(far).collect()
+        });
+        Self { groups: groups.collect(), columns, late: main }
     }
 
     /// Deviation of a column.
     pub fn column(&self, name: &str) -> Option<&Deviated> {
         self.columns.iter().find(|c| c.column == name)
-    }
-
-    /// Root mean square of the deviations of several columns.
-    pub fn mean(&self, columns: &[&str]) -> Option<f64> {
-        let squares: Option<Vec<f64>> =
-            columns.iter().map(|c| Some(self.column(c)?.whole?.powi(2))).collect();
-        squares.filter(|s| !s.is_empty()).map(|s| (s.iter().sum::<f64>() / s.len() as f64).sqrt())
     }
 }
 
@@ -153,18 +144,6 @@ pub(super) fn orders_by_phase(
     found
 }
 
-/// The established columns of a reference of the given kind that vary.
-pub fn established(reference: &Reference, kind: fn(&str) -> bool) -> Vec<&str> {
-    let known = |c: &&str| {
-        *c != FORCE && kind(c) && reference.uncertainty(c).established().is_some() && varies(reference, c)
-    };
-    reference.columns().into_iter().filter(known).collect()
-}
-
-fn varies(reference: &Reference, column: &str) -> bool {
-    reference.column(column).is_some_and(|(_, values)| values.iter().any(|v| *v != values[0]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,7 +151,7 @@ mod tests {
     fn sampled(n: u32, f: impl Fn(f64) -> f64) -> Trajectory {
         let times: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
         let values = times.iter().map(|t| f(*t)).collect();
-        Trajectory { times, columns: [("A.uy".to_owned(), values)].into(), metrics: Vec::new() }
+        Trajectory { times, columns: [("A.uy".to_owned(), values)].into(), ..Trajectory::default() }
     }
 
     /// Given errors, h² before t = 1/2 and h after it, with respect to three identical runs.
@@ -188,7 +167,5 @@ mod tests {
         let fine = arm(0.05);
         let orders = phase_orders("m", "A.uy", &[(0.1, &coarse), (0.05, &fine)], &reference).unwrap();
         assert!((orders.smooth.unwrap() - 2.0).abs() < 1e-9 && (orders.across.unwrap() - 1.0).abs() < 1e-9);
-        assert_eq!(established(&reference, is_trajectory), ["A.uy"]);
-        assert!(is_stress("B.sigma_yy") && is_stress("B.von_mises") && !is_stress("B.uy"));
     }
 }

@@ -47,24 +47,16 @@ pub enum Goal {
 impl Goal {
     /// Names in study files, with the measure that each goal ranks by.
     pub const NAMES: [(&str, Goal, &str); 6] = [
-        ("energy", Goal::Energy, "largest change of energy at any time"),
-        (
-            "force",
-            Goal::Force,
-            "total variation of the contact force; proxies: power above 16 cycles per contact, mean peak, impulse",
-        ),
-        (
-            "stress",
-            Goal::Stress,
-            "total variation of the stresses of the probes; proxies: their mean peaks, their deviations",
-        ),
+        ("energy", Goal::Energy, "largest energy that time integrator and contact dissipated or created"),
+        ("force", Goal::Force, "deviation of the contact force, averaged over a short time"),
+        ("stress", Goal::Stress, "deviation of the stresses of the probes, averaged over a short time"),
         (
             "friction",
             Goal::Friction,
-            "mean of the errors of friction's work and of the share of the time in contact that nodes stick; proxies: one of them",
+            "mean of the errors of friction's work and of the share of the time in contact that nodes stick",
         ),
         ("trajectory", Goal::Trajectory, "deviation of displacements and centres"),
-        ("cost", Goal::Cost, "processor time of arms whose displacements are within `accuracy`"),
+        ("cost", Goal::Cost, "counted cost of arms whose displacements are within `accuracy`"),
     ];
 
     /// All goals.
@@ -97,6 +89,8 @@ pub struct Role {
     pub cost: Option<f64>,
     /// Whether the arm is one of the runs of the computed reference.
     pub fine: bool,
+    /// Whether the arm is a run of the reference with another scheme, or with twice its step.
+    pub check: bool,
     /// Place of the run in an ensemble, if it is a member of one.
     pub member: Option<MemberOf>,
 }

@@ -49,6 +49,8 @@ pub struct StudyManifest {
     pub goal: Option<Goal>,
     /// The required accuracy, if given: see [`Self::accuracy`].
     pub accuracy: Option<f64>,
+    /// Time over which forces and stresses are averaged, if given.
+    pub window: Option<f64>,
     /// The simulations.
     pub arms: Vec<Arm>,
     /// Changes with which the arms are repeated, if they are run several times.

@@ -1,73 +1,44 @@
-//! Measures of goals: each goal has candidates in order of preference; the first one that the
-//! reference establishes is used, with the errors of all arms.
+//! Measures of goals: the errors of all runs, and their uncertainty.
 
-use super::compared::{Compared, established, is_stress, is_trajectory};
+use super::compared::Compared;
 use super::design::Goal;
-use super::reference::{IDEAL, Reference, Standing};
+use super::groups::Kind;
+use super::reference::{IDEAL, Known, Reference, Standing};
 use super::row::Row;
 
 /// The measure of a ranking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
-    /// Name of the metric, or of the combination of columns.
-    pub name: String,
     /// Description of the measure in words.
     pub words: String,
     /// Uncertainty of the errors that comes from the reference.
     pub uncertainty: f64,
-    /// Quantities of the same kind that the reference does not establish, which are left out.
+    /// Uncertainty of the noise, where the rough part of the reference converges.
+    pub noise: Option<f64>,
+    /// Quantities of the same kind that the reference does not establish, with the reasons.
     pub left_out: Vec<String>,
-    /// Preferred measures that are not established, and why.
-    pub passed_over: Vec<(String, String)>,
 }
 
-impl Measure {
-    fn new(name: &str, words: String, uncertainty: f64, left_out: Vec<String>) -> Self {
-        Self { name: name.to_owned(), words, uncertainty, left_out, passed_over: Vec::new() }
-    }
+/// Error of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Errors {
+    /// Error by which arms are ranked.
+    pub(super) error: f64,
+    /// Rough part of the error, of averaged quantities.
+    pub(super) noise: Option<f64>,
 }
 
+/// A measure with the errors of all runs.
+pub(super) struct Measured {
+    pub(super) measure: Measure,
+    pub(super) runs: Vec<Option<Errors>>,
+}
+
+/// Least uncertainty of an error in a metric: an energy that is conserved up to round-off is
+/// conserved.
+const ROUND_OFF: f64 = 1e-9;
 /// Why there is no measure.
 const NO_REFERENCE: &str = "the study has no reference";
-
-/// A possible measure of a goal.
-pub(super) enum Candidate {
-    Metric(&'static str),
-    /// The mean error of several.
-    Mean(&'static [&'static str]),
-    /// The deviation of columns.
-    Columns(&'static str, fn(&str) -> bool),
-    /// A metric of columns.
-    OfColumns(&'static str, fn(&str) -> bool),
-}
-
-/// The possible measures of a goal, in order of preference.
-pub(super) fn candidates(goal: Goal) -> Vec<Candidate> {
-    match goal {
-        Goal::Energy => vec![Candidate::Metric("energy_drift")],
-        Goal::Force => [
-            "force_variation",
-            "force_high_frequency",
-            "peak_mean_force",
-            "impulse_y",
-            "impulse_x",
-            "impulse_z",
-        ]
-        .map(Candidate::Metric)
-        .into(),
-        Goal::Stress => vec![
-            Candidate::OfColumns("variation", is_stress),
-            Candidate::OfColumns("peak_mean", is_stress),
-            Candidate::Columns("stresses", is_stress),
-        ],
-        Goal::Friction => vec![
-            Candidate::Mean(&["friction_lost", "stick_share"]),
-            Candidate::Metric("friction_lost"),
-            Candidate::Metric("stick_share"),
-        ],
-        Goal::Trajectory | Goal::Cost => vec![Candidate::Columns("displacements", is_trajectory)],
-    }
-}
 
 /// The reference value of a metric.
 pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
@@ -89,106 +60,95 @@ pub(super) struct Judge<'a> {
     pub(super) reference: Option<&'a Reference>,
 }
 
-/// A metric with its established reference value.
-struct Known {
-    name: String,
-    right: f64,
-    /// Uncertainty of the errors in the metric, relative to the reference value unless that is 0.
-    uncertainty: f64,
+/// Root mean square.
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0_u32), |(sum, count), x| (sum + x * x, count + 1));
+    (sum / f64::from(count.max(1))).sqrt()
 }
-
-impl Known {
-    fn of(name: &str, right: f64, uncertainty: f64) -> Self {
-        let relative = if right == 0.0 { uncertainty } else { (uncertainty / right).abs() };
-        Self { name: name.to_owned(), right, uncertainty: relative }
-    }
-}
-
-/// A measure with the errors of all runs.
-type Measured = (Measure, Vec<Option<f64>>);
 
 impl Judge<'_> {
-    /// The measure of a candidate, or its name and the reason why there is none.
-    pub(super) fn measured(&self, candidate: &Candidate) -> Result<Measured, (String, String)> {
-        match candidate {
-            Candidate::Metric(name) => {
-                let known = self.known(name)?;
-                let words = if known.right == 0.0 {
-                    format!("{name}, which should be 0")
-                } else {
-                    format!("error of {name}")
-                };
-                Ok(self.mean(name, words, &[known]))
-            }
-            Candidate::Mean(names) => {
-                let known: Result<Vec<Known>, _> = names.iter().map(|name| self.known(name)).collect();
-                let name = names.join(" and ");
-                Ok(self.mean(&name, format!("mean error of {name}"), &known?))
-            }
-            Candidate::Columns(name, kind) => {
-                self.deviations(name, *kind).map_err(|why| ((*name).to_owned(), why.to_owned()))
-            }
-            Candidate::OfColumns(what, kind) => {
-                let name = format!("{what} of stresses");
-                self.of_columns(&name, what, *kind).map_err(|why| (name, why.to_owned()))
-            }
+    /// The measure of a goal, or why there is none; `window`: number of the window of averages.
+    pub(super) fn measured(&self, goal: Goal, window: usize) -> Result<Measured, String> {
+        match goal {
+            Goal::Energy => self.of_metrics(&["energy_error"]),
+            Goal::Friction => self.of_metrics(&["friction_lost", "stick_share"]),
+            Goal::Force => self.of_groups(Kind::Force, window),
+            Goal::Stress => self.of_groups(Kind::Stress, window),
+            Goal::Trajectory | Goal::Cost => self.of_groups(Kind::Motion, 0),
         }
     }
 
-    fn known(&self, name: &str) -> Result<Known, (String, String)> {
-        match standing(self.reference, name) {
-            Standing::Not(why) => Err((name.to_owned(), why)),
-            Standing::Established { value, uncertainty } => Ok(Known::of(name, value, uncertainty)),
-        }
-    }
-
-    /// The mean error of metrics.
-    fn mean(&self, name: &str, words: String, known: &[Known]) -> Measured {
-        let mean = |row: &Row| {
-            let each = known.iter().map(|known| Some(error(row.value(&known.name)?, known.right)));
-            let each: Option<Vec<f64>> = each.collect();
-            each.map(|errors| errors.iter().sum::<f64>() / errors.len() as f64)
-        };
-        let uncertainty = known.iter().map(|known| known.uncertainty).fold(0.0, f64::max);
-        (Measure::new(name, words, uncertainty, Vec::new()), self.rows.iter().map(mean).collect())
-    }
-
-    /// The deviation of columns from those of the reference.
-    fn deviations(&self, name: &str, kind: fn(&str) -> bool) -> Result<Measured, &'static str> {
-        let reference = self.reference.ok_or(NO_REFERENCE)?;
-        let columns = established(reference, kind);
-        if columns.is_empty() {
-            return Err("the reference has no established column of this kind");
-        }
-        let squares =
-            columns.iter().filter_map(|c| reference.uncertainty(c).established()).map(|u| u.1 * u.1);
-        let uncertainty = (squares.sum::<f64>() / columns.len() as f64).sqrt();
-        let errors = self.compared.iter().map(|c| c.as_ref().and_then(|c| c.mean(&columns))).collect();
-        let words = format!("deviation of {} from the reference, relative to the range", columns.join(", "));
-        let all = reference.columns().into_iter().filter(|c| kind(c));
-        let left_out = all.filter(|c| reference.uncertainty(c).established().is_none());
-        let left_out = left_out.map(str::to_owned).collect();
-        Ok((Measure::new(&format!("deviation of {name}"), words, uncertainty, left_out), errors))
-    }
-
-    /// The mean error of a metric of columns.
-    fn of_columns(&self, name: &str, what: &str, kind: fn(&str) -> bool) -> Result<Measured, &'static str> {
-        let reference = self.reference.ok_or(NO_REFERENCE)?;
+    /// The mean error of those metrics that the reference establishes.
+    fn of_metrics(&self, names: &[&str]) -> Result<Measured, String> {
         let mut known = Vec::new();
         let mut left_out = Vec::new();
-        for column in reference.columns().into_iter().filter(|c| kind(c)) {
-            let metric = format!("{column}:{what}");
-            match reference.metric(&metric).established().filter(|(value, _)| *value > 0.0) {
-                Some((value, off)) => known.push(Known::of(&metric, value, off)),
-                None => left_out.push(metric),
+        for name in names {
+            match standing(self.reference, name) {
+                Standing::Established { value, uncertainty } => known.push((*name, value, uncertainty)),
+                Standing::Not(why) => left_out.push(format!("{name} ({why})")),
             }
         }
         if known.is_empty() {
-            return Err("the reference does not establish it for any stress");
+            return Err(left_out.join("; "));
         }
-        let names: Vec<&str> = known.iter().map(|known| known.name.as_str()).collect();
-        let (measure, errors) = self.mean(name, format!("error of {}", names.join(", ")), &known);
-        Ok((Measure { left_out, ..measure }, errors))
+        let mean = |row: &Row| {
+            let each = known.iter().map(|(name, right, _)| Some(error(row.value(name)?, *right)));
+            let each: Vec<f64> = each.collect::<Option<_>>()?;
+            Some(Errors { error: each.iter().sum::<f64>() / each.len() as f64, noise: None })
+        };
+        let relative =
+            known.iter().map(|(_, right, off)| if *right == 0.0 { *off } else { (off / right).abs() });
+        let words = known.iter().map(|(name, right, _)| {
+            if *right == 0.0 { format!("{name}, which should be 0") } else { format!("error of {name}") }
+        });
+        let measure = Measure {
+            words: words.collect::<Vec<_>>().join(" and "),
+            uncertainty: relative.fold(ROUND_OFF, f64::max),
+            noise: None,
+            left_out,
+        };
+        Ok(Measured { measure, runs: self.rows.iter().map(mean).collect() })
+    }
+
+    /// The distance of groups of columns from the reference, relative to their scales.
+    fn of_groups(&self, kind: Kind, window: usize) -> Result<Measured, String> {
+        let reference = self.reference.ok_or(NO_REFERENCE)?;
+        let all = reference.known.iter().enumerate().filter(|(_, known)| known.group.kind == kind);
+        let mut used: Vec<(usize, &Known)> = Vec::new();
+        let mut left_out = Vec::new();
+        for (i, known) in all {
+            match &known.uncertainty {
+                Ok(_) => used.push((i, known)),
+                Err(why) => left_out.push(format!("{} ({why})", known.group.name)),
+            }
+        }
+        if used.is_empty() {
+            let none = || "the reference has no column of this kind".to_owned();
+            return Err(if left_out.is_empty() { none() } else { left_out.join("; ") });
+        }
+        let names: Vec<&str> = used.iter().map(|(_, known)| known.group.name.as_str()).collect();
+        let averaged = match used[0].1.windows.get(window) {
+            Some(w) if *w > 0.0 => format!(", averaged over {}", super::digits::short(*w)),
+            _ => String::new(),
+        };
+        let of = |compared: &Option<Compared>| {
+            let compared = compared.as_ref()?;
+            let each = used.iter().map(|(i, _)| compared.groups.get(*i)?.as_ref()?.get(window).copied());
+            let each: Vec<_> = each.collect::<Option<_>>()?;
+            Some(Errors {
+                error: rms(each.iter().map(|distance| distance.smooth)),
+                noise: (kind != Kind::Motion).then(|| rms(each.iter().map(|distance| distance.rough))),
+            })
+        };
+        let bounds = used.iter().filter_map(|(_, known)| known.uncertainty.as_ref().ok()?.get(window));
+        let noise: Option<Vec<f64>> = used.iter().map(|(_, known)| known.noise).collect();
+        let measure = Measure {
+            words: format!("deviation of {} from the reference{averaged}", names.join(", ")),
+            uncertainty: rms(bounds.copied()),
+            noise: noise.filter(|_| kind != Kind::Motion).map(|noise| rms(noise.into_iter())),
+            left_out,
+        };
+        Ok(Measured { measure, runs: self.compared.iter().map(of).collect() })
     }
 }
 

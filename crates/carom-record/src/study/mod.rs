@@ -16,24 +16,23 @@ mod arms;
 pub mod checks;
 mod claim;
 pub mod compared;
-mod confidence;
 mod convergence;
-mod crosscheck;
 pub mod design;
 mod digits;
 pub mod ensemble;
+mod groups;
 mod manifest;
 mod measure;
 mod orders;
-mod places;
+mod ranked;
 pub mod ranking;
-mod recommendation;
 pub mod reference;
 mod reference_of;
 mod roles;
 mod row;
 mod tables;
 mod trajectory;
+mod verdict;
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +47,7 @@ use design::{Goal, MemberOf};
 use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
 pub use orders::{Refinement, numeric_keys, refinements, varied_keys};
-use ranking::Ranking;
+use ranking::{Ranking, Ranks};
 use reference::{Reference, Trajectory};
 pub use row::Row;
 
@@ -155,7 +154,9 @@ impl Study {
         });
         let expectations = judged.collect();
         let verdicts = verdicts.collect();
-        let ranking_of = |goal| Ranking::of(goal, &manifest, &rows, &compared, reference.as_ref());
+        let ranks =
+            Ranks { manifest: &manifest, rows: &rows, compared: &compared, reference: reference.as_ref() };
+        let ranking_of = |goal| ranks.of(goal);
         let ranking = manifest.goal.map(ranking_of);
         let rubs = rows.iter().any(|row| row.value("friction_lost").is_some());
         let others = Goal::all().filter(|goal| {

@@ -1,37 +1,36 @@
 //! Ranking of the arms by the goal of a study.
 //!
-//! Every goal has measures in order of preference, and the first established one is used. The error
-//! of a run is |m − r|/|r| (|m| if r = 0) for a metric m, or the root mean square deviation of
-//! columns; that of an arm is the median over its ensemble, with the largest distance of a member
-//! from it as its uncertainty; members that failed count for that if only one did not. Arms are
-//! ranked within a level only, that is, at the same step or the same cost. Two arms of a level are
-//! not distinguished if their errors differ by no more than the sum of their uncertainties, than
-//! that of the reference, or than 5 %. The place of an arm is one plus the number of arms that are
-//! distinguishably better, of which twins, with the same results to the last bit, count as one; a
-//! method that is a twin of an earlier one at all levels is no competitor of it. Within a place
-//! arms are in the order of their cost. An arm that created so much energy that the default guard
-//! would have stopped it is placed behind all others; a member that did counts as failed.
+//! ```text
+//! metric      e = |m − r|/|r|, |m| if r = 0
+//! columns     e = rms over vectors of ‖⟨m − r⟩‖ / scale       motion, averaged forces and stresses
+//! of an arm   the largest error of its members; its interval: e ± the uncertainty of the reference
+//! ```
 //!
-//! An arm has the required accuracy if neither its error nor its uncertainty exceeds that. The goal
-//! of least cost ranks the arms that have it by their own processor times,
-//! of which differences of up to 10 % are not distinguished.
+//! Arms are distinguished if their intervals have no point in common. The place of an arm is one
+//! plus the number of arms of its level that are distinguishably better; arms with the same results
+//! to the last bit count as one. An arm is set apart, with the reason, if it or one of its members
+//! stopped, created energy or penetrated. Nothing depends on measured times, nor on the order of
+//! the arms.
 
 use super::arm::Arm;
 use super::compared::Compared;
-use super::crosscheck;
-pub use super::crosscheck::Crosscheck;
 use super::design::Goal;
-use super::ensemble::Spread;
+use super::digits::short;
+use super::groups::Kind;
 use super::manifest::StudyManifest;
-use super::measure::{Judge, candidates};
+use super::measure::{Errors, Judge, Measured};
 pub use super::measure::{Measure, error, standing};
-pub use super::places::Ranked;
-use super::places::{cheaper, more_accurate, places};
-use super::recommendation::recommended;
-pub use super::recommendation::{Confidence, Verdict};
+pub use super::ranked::{Apart, Ranked};
 use super::reference::Reference;
 use super::row::Row;
-use crate::Reason;
+pub use super::verdict::{Confidence, Verdict};
+use super::verdict::{Field, recommended};
+use crate::{Reason, Status};
+
+/// Windows of averages: w, w/2 and 2w.
+const WINDOWS: usize = 3;
+/// Largest penetration of an arm that is not set apart, relative to the largest motion of a body.
+const DEEP: f64 = 0.02;
 
 /// The ranking of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,123 +41,142 @@ pub struct Ranking {
     pub measure: Result<Measure, Reason>,
     /// Ranked arms per level, the best first.
     pub levels: Vec<Vec<Ranked>>,
-    /// Per level, whether the conclusion is another one at equal cost (at equal steps, in a design
-    /// of matched cost).
-    pub crosschecks: Vec<Crosscheck>,
+    /// Arms that are set apart.
+    pub apart: Vec<Apart>,
     /// The recommendation, or the reasons why there is none.
     pub verdict: Result<Verdict, Vec<String>>,
 }
 
-impl Ranking {
-    /// Ranks the arms of a study.
-    pub(super) fn of(
-        goal: Goal,
-        manifest: &StudyManifest,
-        rows: &[Row],
-        compared: &[Option<Compared>],
-        reference: Option<&Reference>,
-    ) -> Self {
-        let judge = Judge { rows, compared, reference };
-        let mut passed_over = Vec::new();
-        let mut found = None;
-        for candidate in candidates(goal) {
-            match judge.measured(&candidate) {
-                Ok(measured) => {
-                    found = Some(measured);
-                    break;
-                }
-                Err(why) => passed_over.push(why),
-            }
-        }
-        let Some((measure, errors)) = found else {
-            let why =
-                passed_over.iter().map(|(name, why)| format!("{name}: {why}")).collect::<Vec<_>>().join("; ");
-            let reasons = vec!["the reference establishes no measure of this goal".to_owned()];
-            return Self {
-                goal,
-                measure: Err(why.into()),
-                levels: Vec::new(),
-                crosschecks: Vec::new(),
-                verdict: Err(reasons),
-            };
-        };
-        let mut measure = Measure { passed_over, ..measure };
-        if goal == Goal::Cost {
-            measure.words =
-                format!("processor time of arms whose {} is at most {}", measure.words, manifest.accuracy());
-        }
-        let count = manifest.arms.iter().map(|a| a.role.level + 1).max().unwrap_or(0);
-        let level = |level: usize| {
-            let arms =
-                manifest.arms.iter().enumerate().filter(|(_, a)| a.role.level == level && !a.role.fine);
-            let not_reference = arms.filter(|(_, a)| manifest.reference.as_ref() != Some(&a.name));
-            let one = |(i, _): (usize, &Arm)| {
-                errors[i]?;
-                let sound = |run: &usize| !rows[*run].is_unsound();
-                let runs = || manifest.runs_of(i).into_iter();
-                let spread =
-                    |runs: &mut dyn Iterator<Item = usize>| Spread::of(runs.filter_map(|run| errors[run]));
-                let members = spread(&mut runs().filter(|run| *run == i || sound(run)))?;
-                // One run alone tells nothing of the scatter: that of the failed ones is counted.
-                let all = spread(&mut runs()).filter(|_| members.count() == 1);
-                let error = members.median();
-                let uncertainty = all.as_ref().unwrap_or(&members).farthest(error);
-                Some(Ranked {
-                    arm: i,
-                    error,
-                    uncertainty,
-                    members: members.count(),
-                    sound: sound(&i),
-                    place: 0,
-                })
-            };
-            let mut ranked: Vec<Ranked> = not_reference.filter_map(one).collect();
-            let is_twin = |a: &Ranked, b: &Ranked| rows[a.arm].is_twin(&rows[b.arm]);
-            let cost = |r: &Ranked| rows[r.arm].value("cpu_time").unwrap_or(f64::INFINITY);
-            ranked.sort_by(|a, b| a.error.total_cmp(&b.error));
-            if goal == Goal::Cost {
-                ranked.retain(|r| r.has_accuracy(manifest.accuracy()) && cost(r).is_finite());
-                places(&mut ranked, |a, b| cheaper(cost(a), cost(b)), is_twin);
-            } else {
-                places(&mut ranked, |a, b| more_accurate(a, b, measure.uncertainty), is_twin);
-            }
-            ranked.sort_by(|a, b| a.place.cmp(&b.place).then(cost(a).total_cmp(&cost(b))));
-            ranked
-        };
-        let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
-        let single = without_twins(manifest, rows, &levels);
-        let verdict = recommended(goal, manifest, &measure, &single, rows, reference);
-        let crosschecks = if goal == Goal::Cost {
-            Vec::new()
-        } else {
-            crosscheck::of(manifest, rows, &single, measure.uncertainty)
-        };
-        Self { goal, measure: Ok(measure), levels, crosschecks, verdict }
-    }
+/// The data of a study that rankings are made from.
+pub(super) struct Ranks<'a> {
+    pub(super) manifest: &'a StudyManifest,
+    pub(super) rows: &'a [Row],
+    pub(super) compared: &'a [Option<Compared>],
+    pub(super) reference: Option<&'a Reference>,
 }
 
-/// The levels without methods whose arms are all twins of those of an earlier method: of the same
-/// runs, one is enough.
-fn without_twins(manifest: &StudyManifest, rows: &[Row], levels: &[Vec<Ranked>]) -> Vec<Vec<Ranked>> {
-    let mut methods: Vec<(&str, Vec<usize>)> = Vec::new();
-    let mut arms: Vec<usize> = levels.iter().flatten().map(|r| r.arm).collect();
-    arms.sort_unstable();
-    for arm in arms {
-        let name = manifest.arms[arm].method();
-        match methods.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, mine)) => mine.push(arm),
-            None => methods.push((name, vec![arm])),
+impl Ranks<'_> {
+    /// Ranks the arms by a goal. A verdict that another window of averages changes is withheld.
+    pub(super) fn of(&self, goal: Goal) -> Ranking {
+        let mut ranking = self.with_window(goal, 0);
+        let is_averaged = matches!(goal, Goal::Force | Goal::Stress);
+        let Some(verdict) = ranking.verdict.as_ref().ok().filter(|_| is_averaged) else { return ranking };
+        let name = |arm: usize| self.manifest.arms[arm].name.as_str();
+        let others = (1..WINDOWS).filter_map(|window| self.with_window(goal, window).verdict.ok());
+        let changed = others
+            .map(|other| other.arm)
+            .find(|other| *other != verdict.arm && !verdict.alike.iter().any(|alike| alike == name(*other)));
+        if let Some(other) = changed {
+            let why = format!(
+                "the verdict depends on the time to average over: {}, and {} with half or twice that time",
+                name(verdict.arm),
+                name(other)
+            );
+            ranking.verdict = Err(vec![why]);
         }
+        ranking
     }
-    let is_twin = |mine: &[usize], others: &[usize]| {
-        mine.len() == others.len() && mine.iter().zip(others).all(|(a, b)| rows[*a].is_twin(&rows[*b]))
-    };
-    let twins: Vec<usize> = (1..methods.len())
-        .filter(|k| methods[..*k].iter().any(|(_, others)| is_twin(&methods[*k].1, others)))
-        .flat_map(|k| methods[k].1.clone())
-        .collect();
-    let single = |level: &Vec<Ranked>| level.iter().filter(|r| !twins.contains(&r.arm)).cloned().collect();
-    levels.iter().map(single).collect()
+
+    fn with_window(&self, goal: Goal, window: usize) -> Ranking {
+        let Self { manifest, rows, compared, reference } = *self;
+        let apart: Vec<Apart> = self.arms().filter_map(|(arm, _)| self.apart(arm)).collect();
+        let judge = Judge { rows, compared, reference };
+        let Measured { measure, runs } = match judge.measured(goal, window) {
+            Ok(measured) => measured,
+            Err(why) => {
+                let reasons = vec![format!("the reference establishes no measure of this goal: {why}")];
+                let levels = Vec::new();
+                return Ranking { goal, measure: Err(why.into()), levels, apart, verdict: Err(reasons) };
+            }
+        };
+        let count = manifest.arms.iter().map(|arm| arm.role.level + 1).max().unwrap_or(0);
+        let level = |level: usize| {
+            let sound = self
+                .arms()
+                .filter(|(i, arm)| arm.role.level == level && !apart.iter().any(|apart| apart.arm == *i));
+            let ranked = sound.filter_map(|(arm, _)| self.ranked(arm, &runs, measure.uncertainty));
+            self.placed(ranked.collect())
+        };
+        let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
+        let is_repeated = |r: &Ranked| manifest.runs_of(r.arm).len() > 1;
+        let field = Field {
+            goal,
+            manifest,
+            measure: &measure,
+            apart: &apart,
+            is_twin: &|a, b| rows[a].is_twin(&rows[b]),
+            is_repeated: levels.iter().flatten().all(is_repeated),
+            ranked: levels.iter().flatten().collect(),
+        };
+        let verdict = recommended(&field);
+        Ranking { goal, measure: Ok(measure), levels, apart, verdict }
+    }
+
+    /// The arms that are compared with the reference, with their numbers.
+    fn arms(&self) -> impl Iterator<Item = (usize, &Arm)> {
+        let reference = self.manifest.reference.as_ref();
+        let arms = self.manifest.arms.iter().enumerate();
+        arms.filter(move |(_, arm)| !arm.role.fine && reference != Some(&arm.name))
+    }
+
+    fn ranked(&self, arm: usize, runs: &[Option<Errors>], uncertainty: f64) -> Option<Ranked> {
+        let members = self.manifest.runs_of(arm).into_iter().map(|run| runs[run]);
+        let members: Vec<Errors> = members.collect::<Option<_>>()?;
+        let error = members.iter().map(|member| member.error).fold(0.0, f64::max);
+        let noise = members.iter().filter_map(|member| member.noise).reduce(f64::max);
+        let interval = [(error - uncertainty).max(0.0), error + uncertainty];
+        let cost = self.rows[arm].value("cost")?;
+        error.is_finite().then_some(Ranked { arm, error, noise, interval, cost, place: 0 })
+    }
+
+    /// Gives the arms of a level their places, and sorts them.
+    fn placed(&self, mut ranked: Vec<Ranked>) -> Vec<Ranked> {
+        let better = |i: usize| {
+            let mut ahead: Vec<usize> = Vec::new();
+            for other in ranked.iter().filter(|other| other.interval[1] < ranked[i].interval[0]) {
+                if !ahead.iter().any(|arm| self.rows[*arm].is_twin(&self.rows[other.arm])) {
+                    ahead.push(other.arm);
+                }
+            }
+            ahead.len()
+        };
+        let places: Vec<usize> = (0..ranked.len()).map(|i| 1 + better(i)).collect();
+        ranked.iter_mut().zip(places).for_each(|(ranked, place)| ranked.place = place);
+        let name = |ranked: &Ranked| &self.manifest.arms[ranked.arm].name;
+        let errors = |a: &Ranked, b: &Ranked| a.error.total_cmp(&b.error).then(a.cost.total_cmp(&b.cost));
+        ranked.sort_by(|a, b| a.place.cmp(&b.place).then(errors(a, b)).then_with(|| name(a).cmp(name(b))));
+        ranked
+    }
+
+    /// Why an arm is set apart, if it is.
+    fn apart(&self, arm: usize) -> Option<Apart> {
+        let of = |run: usize| {
+            let row = &self.rows[run];
+            let member = self.manifest.run(run).role.member.zip(self.manifest.ensemble.as_ref());
+            let which = member.map_or_else(String::new, |(of, all)| format!("{}: ", all.name(&of.member)));
+            let why = match row.value("energy_created") {
+                _ if row.status == Some(Status::Failed) => {
+                    format!("it stopped ({})", row.reason.as_deref().unwrap_or("no reason known"))
+                }
+                Some(share) if row.is_unsound() => format!("it created {} of the energy", short(share)),
+                _ => self.deep(row)?,
+            };
+            Some(format!("{which}{why}"))
+        };
+        let why = self.manifest.runs_of(arm).into_iter().find_map(of)?;
+        Some(Apart { arm, why })
+    }
+
+    /// Penetration of a run that is a part of the motion, and more than that of the reference.
+    fn deep(&self, row: &Row) -> Option<String> {
+        let reference = self.reference?;
+        let motion = reference.known.iter().filter(|known| known.group.kind == Kind::Motion);
+        let motion = motion.map(|known| known.scale).reduce(f64::max)?;
+        let own = row.value("penetration")?;
+        let right = reference.finest()?.value("penetration").unwrap_or(0.0);
+        let is_deep = own - right > DEEP * motion;
+        is_deep.then(|| format!("it penetrates by {}, {} of the motion", short(own), short(own / motion)))
+    }
 }
 
 #[cfg(test)]

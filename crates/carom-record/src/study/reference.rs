@@ -1,22 +1,24 @@
 //! The reference that the arms of a study are compared with, and its uncertainty.
 //!
 //! ```text
-//! computed    runs at decreasing steps, and on finer meshes where `mesh` of [fine] says so; each level
-//!             is run with every member of the study's ensemble. Value: the median of the members at the
-//!             finest level. Uncertainty: that of the refinement (convergence.rs) of a member, the median
-//!             over the members, plus the largest distance of a member from the median, plus a step for
-//!             an instant (half a step if members differ in phase), plus 5/4 of what averaging over a
-//!             short time changes, for extremes and variations (metrics/averaged.rs)
-//! an arm      the same with the arms that differ from it only in the step; with a single run nothing is known
+//! computed    runs at decreasing steps on finer meshes; each level is run with every member of the study's
+//!             ensemble. Value: the median of the members at the finest level. Uncertainty: that of the
+//!             refinement (convergence.rs) of a member, the median over the members, at least the distance to a
+//!             second scheme and the change of the last halving of the step on the same mesh; plus the largest
+//!             distance of a member from the median, plus the step of the level before for each event, plus 5/4 of
+//!             what averaging over a short time changes, for extremes (metrics/averaged.rs)
+//! an arm      the same with the arms that differ from it only in step and refinement
 //! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
 //! ideal       the values for elastic bodies: no change or dissipation of energy, no penetration
 //! ```
 //!
 //! The medians of levels whose members scatter may converge with an order that no member has.
 //!
-//! A value is established if its uncertainty is less than half of it. A column is established in
-//! the same way, with the root mean square deviation between levels in the place of differences.
-//! Only established values are used for rankings.
+//! Nothing is established on one mesh. A value is established if its uncertainty is less than half
+//! of it; a column, or a group of columns with one scale (groups.rs), in the same way with the norm
+//! of the difference between levels in the place of differences. Averaged forces and stresses are
+//! uncertain by at least their distance from the next coarser mesh: two schemes on one mesh have
+//! the error of that mesh in common. Only established values are used for rankings.
 
 use std::collections::BTreeMap;
 
@@ -25,9 +27,11 @@ use carom_formula::Formula;
 use super::convergence::converged;
 use super::digits::short;
 use super::ensemble::Spread;
+use super::groups::{Group, Kind, groups};
+use super::trajectory::forces;
 pub use super::trajectory::{FORCE, Trajectory};
 use crate::Reason;
-use crate::metrics::{self, Metric};
+use crate::metrics::{self, Distance, Metric};
 use crate::order::SAFE;
 use crate::{Column, History};
 
@@ -36,10 +40,11 @@ use crate::{Column, History};
 const RESOLVED: f64 = 0.5;
 
 /// Metrics whose exact value is zero in every case.
-pub const IDEAL: [&str; 8] = [
+pub const IDEAL: [&str; 9] = [
     "energy_lost",
     "energy_created",
     "energy_drift",
+    "energy_error",
     "energy_lost_impact",
     "dissipated_integrator",
     "dissipated_contact",
@@ -47,8 +52,15 @@ pub const IDEAL: [&str; 8] = [
     "penetration_mean",
 ];
 
-/// Metrics that are instants or differences of instants, which a record resolves to one step.
-const INSTANTS: [&str; 5] = ["contact_start", "contact_end", "contact_duration", "turning_time", "apex_time"];
+/// Metrics that are instants or differences of instants, and of how many events that a record
+/// resolves to one step.
+const INSTANTS: [(&str, f64); 5] = [
+    ("contact_start", 1.0),
+    ("contact_end", 1.0),
+    ("contact_duration", 2.0),
+    ("turning_time", 1.0),
+    ("apex_time", 1.0),
+];
 
 /// A reference value, or why there is none.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,15 +113,67 @@ pub struct Level {
 }
 
 impl Level {
-    /// A single run on the given mesh.
+    /// A single run whose mesh is refined with its step.
     pub fn single(step: f64, run: Trajectory) -> Self {
-        Self { step, mesh: 1.0, phases: 1, members: vec![run] }
+        Self { step, mesh: 1.0 / step, phases: 1, members: vec![run] }
     }
 
     /// Range of all phases relative to that of the members: n phases, 1/n of a step apart, cover
     /// (n − 1)/n of the range of a quantity that changes evenly with the phase.
     fn between_phases(&self) -> f64 {
         if self.phases > 1 { self.phases as f64 / (self.phases - 1) as f64 } else { 1.0 }
+    }
+}
+
+/// Columns with one scale, of which the reference is known up to an uncertainty.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Known {
+    /// The columns.
+    pub group: Group,
+    /// Scale of the errors.
+    pub scale: f64,
+    /// Windows of the averages: w, w/2 and 2w for forces and stresses, none for motion.
+    pub windows: Vec<f64>,
+    /// Uncertainty of the average over each window, or why there is none.
+    pub uncertainty: Result<Vec<f64>, Reason>,
+    /// Uncertainty of the rough part, where that converges.
+    pub noise: Option<f64>,
+}
+
+/// Why nothing is known from one mesh.
+const ONE_MESH: &str = "its mesh was not refined";
+/// Ratio of successive distances below which a rough part converges.
+const CONVERGES: f64 = 0.9;
+
+/// Distances of the runs of a reference.
+struct Apart {
+    /// Distances between successive levels.
+    levels: Vec<Distance>,
+    /// Largest distances of a member from the first, at the finest level.
+    members: Distance,
+    /// Largest distances of another scheme and of a longer step.
+    checks: Distance,
+}
+
+impl Apart {
+    /// Values whose differences are the distances between the levels.
+    fn cumulated(&self) -> Vec<f64> {
+        let mut values = vec![0.0];
+        for level in self.levels.iter().rev() {
+            values.push(values[values.len() - 1] + level.smooth);
+        }
+        values.reverse();
+        values
+    }
+}
+
+/// Uncertainties, if the first one, that of the window itself, is small enough to be used.
+fn is_resolved(bounds: Vec<f64>) -> Result<Vec<f64>, Reason> {
+    match bounds.first() {
+        Some(bound) if *bound > RESOLVED => {
+            Err(format!("its uncertainty, {} of its norm, is more than half of it", short(*bound)).into())
+        }
+        _ => Ok(bounds),
     }
 }
 
@@ -122,6 +186,10 @@ pub struct Reference {
     levels: Vec<Level>,
     /// Metrics of the finest run after averaging over a short time.
     averaged: Vec<Metric>,
+    /// Runs of another scheme and of twice the step on the finest mesh.
+    checks: Vec<Trajectory>,
+    /// Groups of columns in which arms are compared.
+    pub known: Vec<Known>,
     /// Uncertainties by column, which take the whole record to compute.
     uncertainties: BTreeMap<String, Standing>,
     exact: bool,
@@ -130,8 +198,15 @@ pub struct Reference {
 impl Reference {
     /// Creates a reference from levels of decreasing steps, the finest last.
     pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
-        let mut reference =
-            Self { what, levels, averaged: Vec::new(), uncertainties: BTreeMap::new(), exact: false };
+        let mut reference = Self {
+            what,
+            levels,
+            averaged: Vec::new(),
+            checks: Vec::new(),
+            known: Vec::new(),
+            uncertainties: BTreeMap::new(),
+            exact: false,
+        };
         let columns = reference.columns().into_iter();
         reference.uncertainties = columns.map(|c| (c.to_owned(), reference.of_column(c))).collect();
         reference
@@ -140,6 +215,75 @@ impl Reference {
     /// Sets the description, and the metrics of the finest run after averaging over a short time.
     pub(super) fn described(self, what: String, averaged: Vec<Metric>) -> Self {
         Self { what, averaged, ..self }
+    }
+
+    /// Sets the runs of another scheme and of twice the step on the finest mesh.
+    pub(super) fn checked(self, checks: Vec<Trajectory>) -> Self {
+        Self { checks, ..self }
+    }
+
+    /// Determines the groups of columns in which arms are compared; `bodies`: those of the probes;
+    /// `window`: the time to average over.
+    pub(super) fn grouped(mut self, bodies: &BTreeMap<String, String>, window: &Result<f64, Reason>) -> Self {
+        let Some(finest) = self.finest() else { return self };
+        let of = |group: Group| self.of_group(group, finest, window);
+        self.known = groups(finest, bodies).into_iter().filter_map(of).collect();
+        self
+    }
+
+    fn of_group(&self, group: Group, finest: &Trajectory, window: &Result<f64, Reason>) -> Option<Known> {
+        let scale = group.scale(finest)?;
+        let windows = match (group.kind, window) {
+            (Kind::Motion, _) => vec![0.0],
+            (_, Ok(window)) => vec![*window, window / 2.0, 2.0 * window],
+            (_, Err(why)) => {
+                let uncertainty = Err(why.clone());
+                return Some(Known { group, scale, windows: Vec::new(), uncertainty, noise: None });
+            }
+        };
+        if self.exact {
+            let uncertainty = Ok(vec![0.0; windows.len()]);
+            return Some(Known { group, scale, windows, uncertainty, noise: Some(0.0) });
+        }
+        let found: Option<Vec<_>> =
+            windows.iter().map(|w| self.apart(&group, finest, *w).map(|apart| (apart, *w))).collect();
+        let bound = |(apart, _): &(Apart, f64)| {
+            let last = apart.levels.last()?.smooth;
+            let refined = converged(&self.sizes(), &apart.cumulated())?.uncertainty;
+            let least = if group.kind == Kind::Motion { 0.0 } else { last };
+            Some((apart.checks.smooth.max(refined).max(least) + apart.members.smooth) / scale)
+        };
+        let uncertainty = match &found {
+            _ if !self.refines_mesh() => Err(ONE_MESH.into()),
+            Some(found) => {
+                let bounds = found.iter().map(bound).collect::<Option<Vec<f64>>>();
+                bounds.ok_or_else(|| "a single run gives no error estimate".into()).and_then(is_resolved)
+            }
+            None => Err("a run of the reference lacks it".into()),
+        };
+        let rough = |(apart, _): &(Apart, f64)| {
+            let [.., before, last] = &apart.levels[..] else { return None };
+            let off = last.rough.max(apart.checks.rough) + apart.members.rough;
+            (last.rough < CONVERGES * before.rough).then_some(off / scale)
+        };
+        let noise = found.as_ref().and_then(|found| rough(found.first()?));
+        Some(Known { group, scale, windows, uncertainty, noise })
+    }
+
+    /// Distances of the runs of the reference in a group of columns; none if a run lacks it.
+    fn apart(&self, group: &Group, finest: &Trajectory, window: f64) -> Option<Apart> {
+        let between = |a: &Trajectory, b: &Trajectory| group.signal(a)?.distance(&group.signal(b)?, window);
+        let levels = self.levels.windows(2);
+        let levels = levels.map(|pair| between(pair[0].members.first()?, pair[1].members.first()?));
+        let farthest = |runs: &[Trajectory]| {
+            runs.iter().try_fold(Distance::default(), |most, run| {
+                let next = between(run, finest)?;
+                Some(Distance { smooth: most.smooth.max(next.smooth), rough: most.rough.max(next.rough) })
+            })
+        };
+        let levels = levels.collect::<Option<Vec<Distance>>>()?;
+        let members = farthest(self.levels.last()?.members.get(1..)?)?;
+        Some(Apart { levels, members, checks: farthest(&self.checks)? })
     }
 
     /// Levels of refinement, the finest last.
@@ -157,7 +301,8 @@ impl Reference {
         self.levels.iter().map(|level| level.step).collect()
     }
 
-    fn finest(&self) -> Option<&Trajectory> {
+    /// The first member of the finest level.
+    pub(super) fn finest(&self) -> Option<&Trajectory> {
         self.levels.last()?.members.first()
     }
 
@@ -186,15 +331,10 @@ impl Reference {
         if history.column("contact_force_x").is_some() {
             columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
         }
-        let sampled = Trajectory { times, columns, metrics: known };
-        let levels = vec![Level::single(0.0, sampled)];
-        Some(Self {
-            what: "the exact formulas of [exact]".to_owned(),
-            levels,
-            averaged: Vec::new(),
-            uncertainties: BTreeMap::new(),
-            exact: true,
-        })
+        let sampled = Trajectory { times, columns, forces: forces(&history), metrics: known };
+        let what = "the exact formulas of [exact]".to_owned();
+        let levels = vec![Level::single(1.0, sampled)];
+        Some(Self { uncertainties: BTreeMap::new(), exact: true, ..Self::of_levels(what, levels) })
     }
 
     /// Value of a metric with its uncertainty.
@@ -213,12 +353,16 @@ impl Reference {
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
         let found = converged(&self.sizes(), &medians).ok_or("a single run gives no error estimate")?;
         let refined = self.refined_members(name).map_or(found.uncertainty, |of_members| of_members.median());
-        let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
-        // A recorded instant is late by up to a step; the median of n phases by (n + 1)/2n of one,
-        // which is at most half a step more than the spread of the phases, (n − 1)/2n.
-        let late = |level: &Level| if level.phases > 1 { level.step / 2.0 } else { level.step };
-        let instant = self.levels.last().filter(|_| INSTANTS.contains(&name)).map_or(0.0, late);
         let single = self.levels.last().and_then(|level| level.members.first()?.value(name));
+        let checks = self.checks.iter().filter_map(|run| Some((run.value(name)? - single?).abs()));
+        let refined = checks.fold(refined, f64::max);
+        let (value, spread) = levels.last().map_or((0.0, 0.0), |s| (s.median(), s.half_width()));
+        // An event is late by up to a step at each level: the difference of two levels is known up
+        // to the longer one of their steps.
+        let before = self.levels.len().saturating_sub(2);
+        let late = self.levels.get(before).map_or(0.0, |level| level.step);
+        let events = INSTANTS.iter().find(|(instant, _)| *instant == name).map_or(0.0, |(_, events)| *events);
+        let instant = events * late;
         let averaged =
             self.averaged.iter().find(|metric| metric.name == name).and_then(|metric| metric.value);
         let smoothed = single.zip(averaged).map_or(0.0, |(one, other)| SAFE * (one - other).abs());
@@ -243,6 +387,7 @@ impl Reference {
     pub fn metric(&self, name: &str) -> Standing {
         match self.estimate(name) {
             Err(why) => Standing::Not(why.into()),
+            Ok(_) if !self.refines_mesh() => Standing::Not(ONE_MESH.to_owned()),
             Ok(Estimate { value, uncertainty, .. }) if uncertainty <= RESOLVED * value.abs() => {
                 Standing::Established { value, uncertainty }
             }
@@ -303,7 +448,9 @@ impl Reference {
             return Standing::Not("a single run gives no error estimate".to_owned());
         };
         let uncertainty = found.uncertainty + spread;
-        if uncertainty <= RESOLVED {
+        if !self.refines_mesh() {
+            Standing::Not(ONE_MESH.to_owned())
+        } else if uncertainty <= RESOLVED {
             Standing::Established { value: 0.0, uncertainty }
         } else {
             Standing::Not(format!(
@@ -347,7 +494,7 @@ mod tests {
     fn refinement_and_spread_add_up() {
         let level = |step: f64, values: &[f64]| Level {
             step,
-            mesh: 1.0,
+            mesh: 1.0 / step,
             phases: 1,
             members: values.iter().map(|v| with("m", *v)).collect(),
         };
@@ -365,41 +512,39 @@ mod tests {
     }
 
     /// By hand: the medians 1.4, 1.2, 1.1 are those of the first member and would be uncertain by
-    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by
-    /// 1.25 · 0.2/1.5.
+    /// 0.125. The second does not converge and is uncertain by 3 · 0.2, the third by 1.25 · 0.2.
     #[test]
     fn every_member_is_refined_alone() {
         let level = |step: f64, values: [f64; 3]| Level {
             step,
-            mesh: 1.0,
+            mesh: 1.0 / step,
             phases: 1,
             members: values.iter().map(|v| with("m", *v)).collect(),
         };
         let levels = [(4.0, [1.4, 1.3, 1.8]), (2.0, [1.2, 1.2, 1.3]), (1.0, [1.1; 3])];
         let levels = levels.map(|(step, values)| level(step, values)).into();
         let found = Reference::of_levels(String::new(), levels).estimate("m").unwrap();
-        assert!((found.uncertainty - 0.25 / 1.5).abs() < 1e-9, "{found:?}");
+        assert!((found.uncertainty - 0.25).abs() < 1e-9, "{found:?}");
     }
 
-    /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and
-    /// late by up to one step; half of it where phases are known, not where roles or meshes are
-    /// swapped only. Members 0.2 before and after the median add 0.2, and 3/2 of that if they are
-    /// three phases.
+    /// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.125 as above, and by
+    /// the step 2 of the level before. Members 0.2 before and after the median add 0.2, and 3/2 of
+    /// that if they are three phases.
     #[test]
     fn instants_are_late() {
         let of = |phases: usize, finest: &[f64]| {
             let level = |step: f64, values: &[f64]| Level {
                 step,
-                mesh: 1.0,
+                mesh: 1.0 / step,
                 phases,
                 members: values.iter().map(|v| with("contact_end", *v)).collect(),
             };
             let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
             Reference::of_levels(String::new(), levels).estimate("contact_end").unwrap().uncertainty
         };
-        assert!((of(1, &[1.1]) - 1.125).abs() < 1e-9);
-        assert!((of(1, &[1.1, 0.9, 1.3]) - 1.325).abs() < 1e-9);
-        assert!((of(3, &[1.1, 0.9, 1.3]) - 0.925).abs() < 1e-9);
+        assert!((of(1, &[1.1]) - 2.125).abs() < 1e-9);
+        assert!((of(1, &[1.1, 0.9, 1.3]) - 2.325).abs() < 1e-9);
+        assert!((of(3, &[1.1, 0.9, 1.3]) - 2.425).abs() < 1e-9);
     }
 
     /// By hand: averaging changes the peak of the finest run from 1.1 to 0.9; 5/4 of that is 0.25.
@@ -421,7 +566,7 @@ mod tests {
         let run = |off: f64| Trajectory {
             times: vec![0.0, 0.5, 1.0],
             columns: [("A.uy".to_owned(), vec![0.0, 5.0 + off, 10.0])].into(),
-            metrics: Vec::new(),
+            ..Trajectory::default()
         };
         let levels = |finest: Vec<Trajectory>| {
             let finest = Level { step: 1.0, mesh: 1.0, phases: 1, members: finest };
@@ -441,8 +586,8 @@ mod tests {
         assert!(matches!(one.uncertainty("B.uy"), Standing::Not(_)) && one.band("B.uy").is_empty());
     }
 
-    /// The bar on a wall: a force of 300 from 0.5 to 7/6. Its variation is 600; its impulse is a
-    /// difference of the integral.
+    /// The bar on a wall: a force of 300 from 0.5 to 7/6. Its impulse is a difference of the
+    /// integral.
     #[test]
     fn metrics_of_exact_formulas() {
         let formulas = [
@@ -453,7 +598,7 @@ mod tests {
         let formulas = formulas.map(|(name, text)| (name.to_owned(), text.to_owned())).into();
         let reference = Reference::of_formulas(&formulas, 2.0, 2000).unwrap();
         let value = |name: &str| reference.metric(name).established().unwrap();
-        assert_eq!(value("force_variation"), (600.0, 0.0));
+        assert_eq!(value("peak_force"), (300.0, 0.0));
         assert!((value("impulse_x").0 - 200.0).abs() < 1e-9);
         assert!(matches!(reference.metric("apex"), Standing::Not(_)));
     }

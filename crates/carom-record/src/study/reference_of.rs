@@ -1,6 +1,9 @@
 //! The reference of a study, from the records of its runs.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+
+use serde_json::Value;
 
 use super::arm::{Arm, step};
 use super::manifest::StudyManifest;
@@ -22,24 +25,36 @@ fn begins(arm: &Arm) -> &'static str {
 }
 
 impl StudyManifest {
+    /// The bodies of the probes, by their names.
+    fn bodies_of_probes(&self) -> BTreeMap<String, String> {
+        let probes = self.arms.first().and_then(|arm| arm.case.get("probes")?.as_array());
+        let text = |probe: &Value, key: &str| Some(probe.get(key)?.as_str()?.to_owned());
+        let pair = |probe: &Value| text(probe, "name").zip(text(probe, "body"));
+        probes.into_iter().flatten().filter_map(pair).collect()
+    }
+
     /// Indices of the arms of the reference, the finest last: those of a computed reference, or at
-    /// most three: the named arm after those arms that differ from it only in a longer step.
+    /// most three: the named arm after those arms that differ from it only in a longer step and a
+    /// mesh that is no finer.
     fn reference_arms(&self) -> Vec<usize> {
         let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
             return Vec::new();
         };
         let others = |a: &Arm| {
-            let sets: Vec<String> = a.sets_without_step().cloned().collect();
-            (sets, a.case_path.clone(), a.role.fine)
+            let sets = a.sets_without_step().filter(|set| !set.starts_with("refine=")).cloned();
+            (sets.collect::<Vec<String>>(), a.case_path.clone(), a.role.fine)
         };
         let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
         if self.arms[named].role.fine {
-            let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| self.arms[*i].role.fine).collect();
+            let is_level = |i: &usize| self.arms[*i].role.fine && !self.arms[*i].role.check;
+            let mut found: Vec<usize> = (0..self.arms.len()).filter(is_level).collect();
             found.sort_by(|a, b| size(b).total_cmp(&size(a)));
             return found;
         }
-        let alike =
-            |i: &usize| others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named);
+        let alike = |i: &usize| {
+            let is_finer = self.arms[*i].facts.refine > self.arms[named].facts.refine;
+            others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named) && !is_finer
+        };
         let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
         found.sort_by(|a, b| size(b).total_cmp(&size(a)));
         found.split_off(found.len().saturating_sub(3))
@@ -52,8 +67,11 @@ impl StudyManifest {
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
             let Some(facts) = self.arms.first().map(|arm| &arm.facts) else { return Ok(None) };
-            return Ok(Reference::of_formulas(&facts.exact, facts.end, 8000));
+            let exact = Reference::of_formulas(&facts.exact, facts.end, 8000);
+            let window = self.window.ok_or_else(|| "[exact] needs `window`, the time to average over".into());
+            return Ok(exact.map(|exact| exact.grouped(&self.bodies_of_probes(), &window)));
         }
+        let mut window = self.window.ok_or_else(|| "the reference has no contact".into());
         let arms = self.reference_arms();
         let mut levels = Vec::new();
         let mut averaged = Vec::new();
@@ -66,6 +84,7 @@ impl StudyManifest {
                 if let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) {
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
+                        window = window.or_else(|_| metrics::window(&run.history));
                     }
                     members.push(Trajectory::of(&run, &metrics::of_run_beside(&run, &self.overlays)));
                     if !phases.contains(&phase) {
@@ -80,7 +99,16 @@ impl StudyManifest {
             levels.push(Level { step, mesh: arm.facts.refine, phases: phases.len(), members });
         }
         let Some(last) = arms.last() else { return Ok(None) };
-        let reference = Reference::of_levels(String::new(), levels);
+        let mut checks = Vec::new();
+        for arm in self.arms.iter().filter(|arm| arm.role.check) {
+            let record = self.intact(directory, arm)?;
+            let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) else {
+                return Ok(None);
+            };
+            checks.push(Trajectory::of(&run, &metrics::of_run_beside(&run, &self.overlays)));
+        }
+        let reference = Reference::of_levels(String::new(), levels).checked(checks);
+        let reference = reference.grouped(&self.bodies_of_probes(), &window);
         let count = match arms.len() {
             1 => "a single run, whose error is not known".to_owned(),
             n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),

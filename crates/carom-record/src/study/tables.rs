@@ -1,12 +1,16 @@
-//! `study.csv`, `study_tidy.csv`, `claims.csv`, `ensemble.csv`, `reference.csv` and `ranking.csv`.
+//! `study.csv`, `study_tidy.csv`, `claims.csv`, `ensemble.csv`, `reference.csv`, `ranking.csv` and
+//! `verdict.json`.
+
+use serde::Serialize;
 
 use super::arm::step;
 use super::ensemble::Spread;
 use super::measure::standing;
+use super::ranking::{Confidence, Ranking};
 use super::reference::Standing;
 use super::{Row, Study, Verdict};
 use crate::metrics::Metric;
-use crate::{RecordError, Status, table};
+use crate::{RecordError, Status, json, table};
 
 /// The status of an arm in the tables.
 fn word(row: &Row) -> &'static str {
@@ -134,20 +138,60 @@ impl Study {
         table::write(&self.directory.join("reference.csv"), &header, metrics.map(line))
     }
 
-    /// `ranking.csv`: level, place and error of every arm.
+    /// `ranking.csv`: level, place and error of every arm; `verdict.json`: the recommendations for
+    /// all goals. Neither depends on the order of the arms, on times or on the machine.
     fn write_ranking(&self) -> Result<(), RecordError> {
         let Some(ranking) = &self.ranking else { return Ok(()) };
-        let header = ["level", "place", "arm", "method", "step", "error", "error_half_width", "cpu_time"];
+        let header =
+            ["level", "place", "arm", "method", "step", "error", "error_low", "error_high", "noise", "cost"];
         let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
             ranked.iter().map(move |r| {
                 let arm = &self.manifest.arms[r.arm];
-                let cost = self.rows[r.arm].value("cpu_time");
                 let named = (level, r.place, &arm.name, arm.role.method.as_deref());
-                (named, step(arm, "time.step"), r.error, r.uncertainty, cost)
+                (named, step(arm, "time.step"), r.error, r.interval, r.noise, r.cost)
             })
         });
-        table::write(&self.directory.join("ranking.csv"), &header, lines)
+        table::write(&self.directory.join("ranking.csv"), &header, lines)?;
+        let all = std::iter::once(ranking).chain(&self.other_rankings);
+        let verdicts: Vec<_> = all.map(|ranking| self.stated(ranking)).collect();
+        json::write(&self.directory.join("verdict.json"), &verdicts)
     }
+
+    /// The verdict of a ranking as it is stored.
+    fn stated<'a>(&'a self, ranking: &'a Ranking) -> Stated<'a> {
+        let name = |arm: usize| self.manifest.arms[arm].name.as_str();
+        let mut apart: Vec<_> =
+            ranking.apart.iter().map(|apart| (name(apart.arm), apart.why.as_str())).collect();
+        apart.sort_unstable();
+        let verdict = ranking.verdict.as_ref().ok();
+        let ranked = || ranking.levels.iter().flatten();
+        Stated {
+            goal: ranking.goal.word(),
+            measure: ranking.measure.as_ref().ok().map(|measure| measure.words.as_str()),
+            recommended: verdict.map(|verdict| name(verdict.arm)),
+            error: verdict.and_then(|verdict| Some(ranked().find(|r| r.arm == verdict.arm)?.interval)),
+            confidence: verdict.map(|verdict| verdict.confidence),
+            tied: verdict.map_or(&[], |verdict| &verdict.alike),
+            reasons: ranking.verdict.as_ref().map_or_else(|why| why, |verdict| &verdict.reasons),
+            doubts: verdict.map_or(&[], |verdict| &verdict.confidence_reasons),
+            apart,
+        }
+    }
+}
+
+/// A verdict in `verdict.json`.
+#[derive(Serialize)]
+struct Stated<'a> {
+    goal: &'a str,
+    measure: Option<&'a str>,
+    recommended: Option<&'a str>,
+    /// Ends of the interval of the error.
+    error: Option<[f64; 2]>,
+    confidence: Option<Confidence>,
+    tied: &'a [String],
+    reasons: &'a [String],
+    doubts: &'a [String],
+    apart: Vec<(&'a str, &'a str)>,
 }
 
 fn row_metrics(row: &Row) -> impl Iterator<Item = &Metric> {

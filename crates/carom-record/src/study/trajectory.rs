@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::Run;
 use crate::metrics::{self, Metric};
+use crate::{History, Run};
 
 /// The part of a run that is used for comparisons.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,12 +13,35 @@ pub struct Trajectory {
     /// Columns of probes and of the striker's centre, and [`FORCE`], the magnitude of the contact
     /// force.
     pub columns: BTreeMap<String, Vec<f64>>,
+    /// Components of the contact force by axis.
+    pub forces: BTreeMap<String, Force>,
     /// Metrics of the run.
     pub metrics: Vec<Metric>,
 }
 
+/// A component of the contact force.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Force {
+    /// Values at the rows.
+    pub values: Vec<f64>,
+    /// The impulse up to each row, which the time integrator accumulates.
+    pub impulse: Vec<f64>,
+}
+
 /// Column name of the magnitude of the contact force.
 pub const FORCE: &str = "contact force";
+/// Axes of vectors.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Components of the contact force that are recorded with their impulses.
+pub(super) fn forces(history: &History) -> BTreeMap<String, Force> {
+    let component = |axis: &&str| {
+        let values = history.column(&format!("contact_force_{axis}"))?.to_vec();
+        let impulse = history.column(&format!("contact_impulse_{axis}"))?.to_vec();
+        Some(((*axis).to_owned(), Force { values, impulse }))
+    };
+    AXES.iter().filter_map(component).collect()
+}
 
 impl Trajectory {
     /// Extracts the trajectory from a record.
@@ -26,7 +49,7 @@ impl Trajectory {
         let history = &run.history;
         let mut names: Vec<String> = metrics::probe_columns(run).into_iter().map(str::to_owned).collect();
         if let Some(striker) = metrics::striker(history) {
-            names.extend(["x", "y"].map(|axis| format!("{striker}.center_{axis}")));
+            names.extend(AXES.map(|axis| format!("{striker}.center_{axis}")));
         }
         let columns = names.into_iter().filter_map(|name| {
             let values = history.column(&name)?.to_vec();
@@ -34,7 +57,7 @@ impl Trajectory {
         });
         let mut columns: BTreeMap<_, _> = columns.collect();
         columns.insert(FORCE.to_owned(), metrics::contact_force(history));
-        Self { times: history.times().to_vec(), columns, metrics: metrics.to_vec() }
+        Self { times: history.times().to_vec(), columns, forces: forces(history), metrics: metrics.to_vec() }
     }
 
     pub(super) fn value(&self, metric: &str) -> Option<f64> {

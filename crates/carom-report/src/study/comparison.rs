@@ -1,25 +1,22 @@
-//! Figures that compare time integrators by a point for every arm: error against cost, and
-//! roughness against dissipation.
+//! The figure that compares time integrators by a point for every arm: error against cost.
 
 use carom_record::Status;
-use carom_record::study::compared::{established, is_trajectory};
-use carom_record::study::design::Goal;
-use carom_record::study::ranking::standing;
 use carom_record::study::{Row, Study};
 
 use crate::ordered::grouped;
 use crate::plot::{COLORS, Curve, Drawn, Pane, Plot};
 use crate::text::said_if;
 
-/// Smaller drifts of the energy are drawn as this one.
-const LEAST_DRIFT: f64 = 1e-6;
+/// Errors that are drawn as this one if they are smaller: one method that conserves energy up to
+/// round-off would compress all others.
+const SMALL: f64 = 1e-6;
 
 /// The figures of a study with a goal; none for a study without.
 pub(super) fn plots(study: &Study) -> Vec<Plot> {
     if study.manifest.goal.is_none() {
         return Vec::new();
     }
-    [error_cost(study), roughness_dissipation(study)].into_iter().flatten().collect()
+    error_cost(study).into_iter().collect()
 }
 
 /// The style of an arm in all figures: that of its method, where there are methods.
@@ -108,54 +105,26 @@ fn front(points: &[Point]) -> Vec<Point> {
     sorted
 }
 
-/// Error against cost: of the displacements where the goal is the trajectory or the cost, else the
-/// error by which the arms are ranked.
+/// Error against cost, as ranked.
 fn error_cost(study: &Study) -> Option<Plot> {
     let ranking = study.ranking.as_ref()?;
-    let cost = |arm: usize| study.rows[arm].value("cpu_time");
-    let is_of_motion = matches!(ranking.goal, Goal::Trajectory | Goal::Cost);
-    let reference = study.reference.as_ref();
-    let columns = reference.map(|reference| established(reference, is_trajectory)).unwrap_or_default();
-    let ranked = |arm: usize| Some(ranking.levels.iter().flatten().find(|ranked| ranked.arm == arm)?.error);
-    let deviation = |arm: usize| study.compared.get(arm)?.as_ref()?.mean(&columns);
-    let error = |arm: usize| if is_of_motion { deviation(arm) } else { ranked(arm) };
-    let of_column = |column: &&str| Some(reference?.uncertainty(column).established()?.1.powi(2));
-    let squares: f64 = columns.iter().filter_map(of_column).sum();
-    let uncertainty = match &ranking.measure {
-        Ok(measure) if !is_of_motion => measure.uncertainty,
-        _ => (squares / columns.len().max(1) as f64).sqrt(),
-    };
-    let floor = (uncertainty > 0.0).then(|| (uncertainty, "uncertainty of the errors".to_owned()));
-    let what = if is_of_motion { "displacements".to_owned() } else { ranking.goal.word().to_owned() };
+    let measure = ranking.measure.as_ref().ok()?;
+    let floor = Some((measure.uncertainty, "uncertainty of the errors".to_owned()));
     let plot = Plot {
         name: "error-cost".into(),
-        caption: format!("Error ({what}) against the processor time of the time steps without output."),
-        x_label: "processor time (s)".into(),
-        panes: vec![Pane { floor, ..Pane::default() }],
+        caption: format!(
+            "Error ({}) against the counted cost, in evaluations of the internal forces.",
+            ranking.goal.word()
+        ),
+        x_label: "counted cost".into(),
+        panes: vec![Pane { floor: floor.filter(|(least, _)| *least > SMALL), ..Pane::default() }],
         ..Plot::default()
     };
-    scatter(study, plot, "relative error", |arm| Some((cost(arm)?, error(arm)?)))
-}
-
-fn roughness_dissipation(study: &Study) -> Option<Plot> {
-    // One method that conserves energy up to round-off would compress all others.
-    let lost = |arm: usize| Some(study.rows[arm].value("energy_drift")?.max(LEAST_DRIFT));
-    let right = standing(study.reference.as_ref(), "force_variation").established();
-    let right = right.map(|known| known.0).filter(|right| *right > 0.0);
-    // Without an established reference the scale is one rise and one fall.
-    let scale = |arm: usize| right.or_else(|| Some(2.0 * study.rows[arm].value("peak_mean_force")?));
-    let variation = |arm: usize| Some(study.rows[arm].value("force_variation")? / scale(arm)?);
-    let over = if right.is_some() { "TV / TV of the reference" } else { "TV / (2 × peak mean force)" };
-    let plot = Plot {
-        name: "roughness-dissipation".into(),
-        caption:
-            "Roughness of the contact force, as its total variation TV during the first contact, against the \
-                  largest change of the energy, of which 10^{−6} stands for less."
-                .into(),
-        x_label: "energy drift / largest energy".into(),
-        ..Plot::default()
-    };
-    scatter(study, plot, over, |arm| Some((lost(arm)?, variation(arm)?)))
+    let ranked = |arm: usize| ranking.levels.iter().flatten().find(|ranked| ranked.arm == arm);
+    scatter(study, plot, "relative error", |arm| {
+        let ranked = ranked(arm)?;
+        Some((ranked.cost, ranked.error.max(SMALL)))
+    })
 }
 
 #[cfg(test)]

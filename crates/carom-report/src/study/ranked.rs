@@ -1,9 +1,7 @@
-//! The ranking of the arms of a study and what it rests on: reference values, the other goals, and
-//! the comparison at equal steps or equal cost.
+//! The ranking of the arms of a study and what it rests on: reference values, and the other goals.
 
 use carom_record::metrics::Metric;
-use carom_record::study::design::{Goal, Kind};
-use carom_record::study::ranking::{Crosscheck, Ranking, standing};
+use carom_record::study::ranking::{Ranking, standing};
 use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
@@ -14,13 +12,11 @@ use super::settings::is_off_budget;
 use crate::digits::{count, five, three};
 use crate::document::{file, labelled, or_dash};
 use crate::labels::with_unit;
-use crate::scientific::powers;
 use crate::text::{Label, typeset};
 
 /// How places are given.
-const PLACES: &str = "The place of an arm is one plus the number of arms that are distinguishably better: by more \
-    than the uncertainty of the reference, than the spreads of both over the ensemble added, and than 5 %; identical \
-    arms count once. Within a place arms are in the order of their cost.";
+const PLACES: &str = "The place of an arm is one plus the number of arms of its level whose intervals are below its own; \
+    identical arms count once. Cost is counted, in evaluations of the internal forces.";
 
 /// Orders above it are not those of a scheme.
 const HIGHEST: f64 = 4.0;
@@ -32,11 +28,12 @@ pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
         @if let Ok(measure) = &ranking.measure {
             p {
                 "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (three(measure.uncertainty)) ")."
+                @if let Some(noise) = measure.noise { " The noise is known up to " (three(noise)) "." }
             }
             (table(study, ranking, origins))
             p.small { (PLACES) " With all digits: " (file("ranking.csv")) "." }
-            (crosschecks(study, ranking))
         }
+        (apart(study, ranking))
         (other_goals(study))
         @match &study.reference {
             Some(reference) => (reference_values(study, reference)),
@@ -54,41 +51,36 @@ type Column<'a> = (String, Box<dyn Fn(usize) -> Option<String> + 'a>);
 fn columns<'a>(study: &'a Study, ranking: &'a Ranking) -> Vec<Column<'a>> {
     let value = |arm: usize, metric: &str| study.rows[arm].value(metric);
     let unit = |metric: &str| study.metrics().into_iter().find(|m| m.name == metric).map(|m| m.unit.clone());
-    let variation = standing(study.reference.as_ref(), "force_variation").established();
-    let ranked = ranking.levels.iter().flatten();
-    let error = move |arm: usize| {
-        let ranked = ranked.clone().find(|ranked| ranked.arm == arm)?;
-        Some(match ranked.uncertainty {
-            0.0 => three(ranked.error),
-            range => format!("{} ± {}", three(ranked.error), three(range)),
-        })
+    let of_arm = |arm: usize| ranking.levels.iter().flatten().find(|ranked| ranked.arm == arm);
+    let error = move |arm: usize| Some(three(of_arm(arm)?.error));
+    let interval = move |arm: usize| {
+        let [low, high] = of_arm(arm)?.interval;
+        Some(format!("{} to {}", three(low), three(high)))
     };
+    let noise = move |arm: usize| of_arm(arm)?.noise.map(three);
     let step_of = |arm: usize| {
         let arm = &study.manifest.arms[arm];
         let budget = if is_off_budget(study, arm) { " !" } else { "" };
         Some(step(arm, "time.step").map(five)? + budget)
     };
     let late = |arm: usize| Some(three(study.compared.get(arm)?.as_ref()?.late.as_ref()?.1));
-    let excess = move |arm: usize| {
-        let (right, _) = variation.filter(|known| known.0 > 0.0)?;
-        Some(three(value(arm, "force_variation")? / right - 1.0))
-    };
     let mut all: Vec<Column> = vec![
         (with_unit("Δt", time_unit(study)), Box::new(step_of)),
         ("Error".to_owned(), Box::new(error)),
+        ("Interval".to_owned(), Box::new(interval)),
+        ("Noise".to_owned(), Box::new(noise)),
         (with_unit("Delay", time_unit(study)), Box::new(late)),
     ];
-    for (head, metric) in [("CPU", "cpu_time"), ("Newton iterations", "newton_iterations")] {
+    for (head, metric) in [("Cost", "cost"), ("Newton iterations", "newton_iterations")] {
         let head = with_unit(head, &unit(metric).unwrap_or_default());
         all.push((head, Box::new(move |arm| value(arm, metric).map(count))));
     }
     for (head, metric) in
-        [("Energy drift", "energy_drift"), ("Energy lost", "energy_lost"), ("Penetration", "penetration")]
+        [("Energy error", "energy_error"), ("Energy lost", "energy_lost"), ("Penetration", "penetration")]
     {
         let head = with_unit(head, &unit(metric).unwrap_or_default());
         all.push((head, Box::new(move |arm| value(arm, metric).map(three))));
     }
-    all.push(("Excess variation of force".to_owned(), Box::new(excess)));
     let arms: Vec<usize> = ranking.levels.iter().flatten().map(|ranked| ranked.arm).collect();
     all.retain(|(_, cell)| arms.iter().any(|arm| cell(*arm).is_some()));
     all
@@ -105,10 +97,10 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
     let ranked = || ranking.levels.iter().flatten();
     let is_ranked = |arm: usize| ranked().any(|ranked| ranked.arm == arm);
     let same = |arm: usize| twin(origins, arm).filter(|first| is_ranked(*first));
+    let is_apart = |arm: usize| ranking.apart.iter().any(|apart| apart.arm == arm);
     let all = methods(study).into_iter().flat_map(|(_, arms)| arms);
-    let without: Vec<&str> =
-        all.filter(|arm| !is_ranked(*arm)).map(|arm| study.rows[arm].name.as_str()).collect();
-    let why = if ranking.goal == Goal::Cost { "not accurate enough" } else { "metric not available" };
+    let without = all.filter(|arm| !is_ranked(*arm) && !is_apart(*arm));
+    let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
     let is_any_off = study.manifest.arms.iter().any(|arm| is_off_budget(study, arm));
     html! {
         div {
@@ -130,7 +122,6 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
                                 @if let Some(first) = same(r.arm) {
                                     span.small { " (identical to " (Label(study.manifest.arms[first].method())) ")" }
                                 }
-                                @if !r.sound { span.small { " (created energy)" } }
                             }
                             @for (_, cell) in &columns { td.n { (Label(cell(r.arm).as_deref().unwrap_or("–"))) } }
                         }
@@ -140,51 +131,21 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
         }
         p.small {
             "▸: recommended. Errors are relative; energies are fractions of the largest kinetic + strain energy. "
-            @if study.manifest.ensemble.is_some() { "Error: median of the ensemble ± the largest distance from it. " }
+            @if study.manifest.ensemble.is_some() { "Error: the largest of the ensemble. " }
             @if is_any_off { "!: more than 10 % off the budget. " }
-            @if ranked().any(|ranked| !ranked.sound) { "Arms that created energy are behind the others of their level. " }
-            @if !without.is_empty() { "Not ranked (" (why) "): " (without.join("; ")) "." }
+            @if !without.is_empty() { "Not ranked (metric not available): " (without.join("; ")) "." }
         }
     }
 }
 
-/// Which conclusions change between equal steps and equal cost.
-fn crosschecks(study: &Study, ranking: &Ranking) -> Markup {
-    let kind = study.manifest.design.as_ref().map(|design| design.kind);
-    let other = if kind == Some(Kind::MatchedCost) { "equal steps" } else { "equal cost" };
-    let value = |check: &Crosscheck| match check.at {
-        "step" => format!("Δt = {}", in_time(study, check.value)),
-        _ => format!("{} s of processor time", three(check.value)),
-    };
-    let best = |check: &Crosscheck| {
-        let shown = check.errors.iter().take(5).map(|(method, error)| format!("{method}: {}", three(*error)));
-        shown.collect::<Vec<_>>().join("; ")
-    };
-    let conclusion = |check: &Crosscheck| match &check.better {
-        Some(method) => format!("changes: {method} is better"),
-        None => "does not change".to_owned(),
-    };
+/// Arms that are set apart, with the reasons.
+fn apart(study: &Study, ranking: &Ranking) -> Markup {
     html! {
-        @if !ranking.crosschecks.is_empty() {
-            details {
-                summary { "The same at " (other) }
-                table.stack {
-                    thead {
-                        tr {
-                            th { "Level" } th { "First in the table" } th { "Compared at" } th { "Smallest errors there" }
-                            th { "Conclusion" }
-                        }
-                    }
-                    @for check in &ranking.crosschecks {
-                        tr {
-                            td { (check.level + 1) } td { (Label(&check.first)) } td { (Label(&value(check))) }
-                            td { (Label(&best(check))) } td { (Label(&conclusion(check))) }
-                        }
-                    }
-                }
-                p.small {
-                    "Errors interpolated between the levels of a method, linearly in logarithms. Methods and levels that \
-                     do not reach the value are left out; differences within the uncertainties change nothing."
+        @if !ranking.apart.is_empty() {
+            p { "Set apart, and neither ranked nor recommended:" }
+            ul {
+                @for apart in &ranking.apart {
+                    li { (Label(&study.rows[apart.arm].name)) ": " (typeset(&apart.why)) "." }
                 }
             }
         }
@@ -210,9 +171,6 @@ fn other_goals(study: &Study) -> Markup {
                                     @if !verdict.alike.is_empty() {
                                         br; span.small { "tied with " (Label(&verdict.alike.join("; "))) }
                                     }
-                                    @if let Some(depth) = &verdict.penetration {
-                                        br; span.small { "a penalty: " (Label(&powers(depth))) }
-                                    }
                                 }
                                 td { (verdict.confidence.word()) } td { (Label(&measure.words)) }
                             }
@@ -230,12 +188,6 @@ fn other_goals(study: &Study) -> Markup {
 fn reference_values(study: &Study, reference: &Reference) -> Markup {
     let is_known = |m: &&Metric| study.rows.iter().any(|row| row.value(&m.name).is_some()) && !m.is_work();
     let metrics: Vec<&Metric> = study.metrics().into_iter().filter(is_known).collect();
-    let columns = reference.columns().into_iter();
-    let unknown = columns.filter_map(|column| match reference.uncertainty(column) {
-        Standing::Not(why) => Some((format!("deviation of {column}"), why)),
-        Standing::Established { .. } => None,
-    });
-    let unknown: Vec<_> = unknown.collect();
     html! {
         details {
             summary { "Reference values and their uncertainties" }
@@ -260,17 +212,24 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                         }
                     }
                 }
-                @for (name, why) in unknown {
-                    tr { td { code { (name) } } td {} td colspan="4" { "not established: " (typeset(&why)) } }
+                @for known in &reference.known {
+                    tr {
+                        td colspan="2" { "history: " (Label(&known.group.name)) }
+                        @match &known.uncertainty {
+                            Ok(bounds) => { td {} td.n { (or_dash(bounds.first().copied(), three)) } td colspan="2" {} }
+                            Err(why) => td colspan="4" { "not established: " (typeset(why)) },
+                        }
+                    }
                 }
             }
             p.small {
-                "Uncertainty: that of the refinement (grid convergence index; of an ensemble its median), plus the \
-                 largest distance of a member from the median, plus a step for instants, plus 5/4 of what averaging over \
-                 1/16 of the contact changes, for extremes and variations. An order in brackets, above " (HIGHEST)
+                "Uncertainty: that of the refinement (grid convergence index; of an ensemble its median), at least the \
+                 distance to a second scheme and the change of the last halving of the step; plus the largest distance of \
+                 a member from the median, plus a step for instants, plus 5/4 of what averaging over 1/16 of the contact \
+                 changes, for extremes. An order in brackets, above " (HIGHEST)
                 ", shows that values do not converge regularly yet. "
                 @if !reference.refines_mesh() {
-                    "The mesh was not refined, so its error is not included; " code { "mesh = [1, 2, 4]" } " in "
+                    "The mesh was not refined, so that nothing is established; " code { "mesh = [1, 2, 4]" } " in "
                     code { "[fine]" } " refines it."
                 }
             }

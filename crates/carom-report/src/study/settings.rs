@@ -110,13 +110,12 @@ fn design(study: &Study) -> Markup {
             @if is_cost { "Matched cost" } @else { "Matched step" } " (" (Label(&levels.join(", "))) "). "
             @if is_cost || manifest.arms.iter().any(|arm| manifest.by_cost(arm)) {
                 "An arm matched by cost has the time step at which its cost equals that of " b { (design.cost_of) }
-                " at its level: Newton iterations and factorisations, or steps, weighted by their processor time in a \
-                 pilot run (" code { "pilots/" } ")."
+                " at its level, counted from its steps, iterations and factorisations (trials: " code { "pilots/" } ")."
             }
         }
         @if !missed.is_empty() {
             p {
-                span.miss { "More than 10 % off the budget" } " (share of it in brackets), and not compared at equal cost: "
+                span.miss { "More than 10 % off the budget" } " (share of it in brackets): "
                 (missed.join("; ")) "."
             }
         }

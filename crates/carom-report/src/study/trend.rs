@@ -311,6 +311,7 @@ pub(crate) mod tests {
             design: None,
             goal: None,
             accuracy: None,
+            window: None,
             arms: arms.iter().map(arm).collect(),
             ensemble: None,
             members: Vec::new(),

@@ -14,11 +14,10 @@ use crate::scientific::powers;
 use crate::text::{Label, Prose, typeset};
 
 /// Metrics whose error a user should know before following a recommendation.
-const SIDE_EFFECTS: [(&str, &str); 9] = [
+const SIDE_EFFECTS: [(&str, &str); 8] = [
     ("energy_lost", "energy lost"),
     ("dissipated_integrator", "energy dissipated by the integrator"),
     ("dissipated_contact", "energy dissipated by contact"),
-    ("force_variation", "error of the total variation of the contact force"),
     ("impulse_x", "error of the x impulse"),
     ("impulse_y", "error of the y impulse"),
     ("impulse_z", "error of the z impulse"),
@@ -59,13 +58,14 @@ pub(super) fn section(study: &Study) -> Markup {
             p {
                 b { "Recommended: " (Label(arm.method())) }
                 @if let Some(h) = step(arm, "time.step") { b { ", Δt = " (Label(&in_time(study, h))) } }
+                ", confidence: " b { (verdict.confidence.word()) }
                 ". " (Prose(&goal))
             }
             div.beside {
                 dl {
                     (entry("Reasons", &verdict.reasons))
-                    @if !verdict.alike.is_empty() { (entry("Tied with, over all levels", &[verdict.alike.join("; ")])) }
-                    (entry(&format!("Confidence: {}", verdict.confidence.word()), &verdict.confidence_reasons))
+                    @if !verdict.alike.is_empty() { (entry("Not distinguished, at no more cost", &[verdict.alike.join("; ")])) }
+                    (entry("Confidence", &verdict.confidence_reasons))
                 }
                 dl {
                     @if !sets.is_empty() {
@@ -88,14 +88,14 @@ fn of_level(study: &Study, arm: usize, value: impl Fn(usize) -> Option<f64>) -> 
 }
 
 fn costs(study: &Study, arm: usize) -> String {
-    let time = |arm: usize| study.rows[arm].value("cpu_time");
+    let time = |arm: usize| study.rows[arm].value("cost");
     let least = of_level(study, arm, time).into_iter().fold(f64::INFINITY, f64::min);
     let against = time(arm).filter(|time| *time > least && least > 0.0);
     let against = against
         .map_or_else(String::new, |time| format!(" ({} times the lowest of its level)", three(time / least)));
     let of = |name: &str| or_dash(study.rows[arm].value(name), count);
     format!(
-        "{} s of processor time{against}; {} steps, {} Newton iterations, {} factorisations",
+        "{} evaluations of the internal forces{against}; {} steps, {} Newton iterations, {} factorisations",
         or_dash(time(arm), three),
         of("steps"),
         of("newton_iterations"),

@@ -275,7 +275,7 @@ fn sensitivity(name: &str) -> Sensitivity {
             "",
             "contact_episodes" | "impulse_x" | "impulse_y" | "impulse_z" | "energy_created" | "friction_lost"
             | "slip_distance" | "stick_share" | "penetration" | "steps" | "newton_iterations"
-            | "rejected_steps" | "factorisations",
+            | "rejected_steps" | "factorisations" | "cost",
         ) => Sensitivity::None,
         ("", "contact_start" | "contact_end" | "turning_time" | "apex_time") => Sensitivity::Instant(1.0),
         ("", "contact_duration") => Sensitivity::Instant(2.0),
@@ -288,15 +288,16 @@ fn sensitivity(name: &str) -> Sensitivity {
             | "apex"
             | "energy_lost"
             | "energy_drift"
+            | "energy_error"
             | "energy_lost_impact"
             | "dissipated_integrator"
             | "dissipated_contact",
         )
         | (_, "peak_mean")
-        | ("A.uy" | "B.uy", "min" | "max" | "variation") => Sensitivity::Value,
-        ("", "force_roughness" | "force_variation" | "force_high_frequency" | "penetration_mean")
+        | ("A.uy" | "B.uy", "min" | "max") => Sensitivity::Value,
+        ("", "force_roughness" | "force_high_frequency" | "penetration_mean")
         | (_, "roughness" | "high_frequency")
-        | ("C.sigma_yy", "min" | "max" | "variation") => Sensitivity::Shape,
+        | ("C.sigma_yy", "min" | "max") => Sensitivity::Shape,
         ("", "cpu_time" | "wall_time") => Sensitivity::Machine,
         _ => panic!("how does `{name}` depend on the rows?"),
     }

@@ -1,16 +1,16 @@
 //! Rankings and recommendations of studies that are written down by hand.
 
 use super::*;
+use crate::Machine;
+use crate::metrics::Distance;
 use crate::metrics::Metric;
 use crate::study::StudySource;
-use crate::study::compared::Deviated;
-use crate::study::design::{Design, Kind, MemberOf, Role};
+use crate::study::design::{Design, Kind as Matched, MemberOf, Role};
 use crate::study::ensemble::{Ensemble, Member};
-use crate::study::reference::{Level, Trajectory};
-use crate::{Machine, Status};
+use crate::study::reference::{Known, Level, Trajectory};
 
-/// A run: its method and level, its energy drift (the measure of the goal `energy`, which should be
-/// 0), and its processor time.
+/// A run: its method and level, its energy error (the measure of the goal `energy`, which should be
+/// 0), and its counted cost.
 type Made = (&'static str, usize, f64, f64);
 
 fn arm(&(method, level, ..): &Made) -> Arm {
@@ -52,9 +52,10 @@ fn study(runs: &[Made]) -> (StudyManifest, Vec<Row>) {
         created: String::new(),
         machine: Machine::current(),
         reference: None,
-        design: Some(Design { kind: Kind::MatchedStep, cost_of: runs[0].0.into(), steps }),
+        design: Some(Design { kind: Matched::MatchedStep, cost_of: runs[0].0.into(), steps }),
         goal: None,
         accuracy: Some(0.05),
+        window: None,
         overlays: Vec::new(),
         arms: runs.iter().map(arm).collect(),
         ensemble: None,
@@ -63,294 +64,190 @@ fn study(runs: &[Made]) -> (StudyManifest, Vec<Row>) {
         expects: Vec::new(),
         source: StudySource::default(),
     };
-    let rows = runs.iter().map(|run| row(run.0, &[("energy_drift", run.2), ("cpu_time", run.3)]));
+    let rows = runs.iter().map(|run| row(run.0, &[("energy_error", run.2), ("cost", run.3)]));
     (manifest, rows.collect())
 }
 
-/// Ranks a study by cost. The errors are its energy drifts, taken as deviations of a displacement
-/// from a reference of three identical runs.
-fn by_cost((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
-    let column = || ("A.uy".to_owned(), vec![0.0, 1.0]);
-    let run = || Trajectory { times: vec![0.0, 1.0], columns: [column()].into(), metrics: Vec::new() };
-    let levels = [4.0, 2.0, 1.0].map(|step| Level::single(step, run()));
-    let reference = Reference::of_levels(String::new(), levels.into());
+fn by_energy((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
+    Ranks { manifest, rows, compared: &vec![None; rows.len()], reference: None }.of(Goal::Energy)
+}
+
+/// Ranks by a goal of columns, with errors given for each run.
+fn by_columns(goal: Goal, (manifest, rows): &(StudyManifest, Vec<Row>), reference: &Reference) -> Ranking {
     let compared = |row: &Row| {
-        let off = row.value("energy_drift");
-        let column = Deviated { column: "A.uy".into(), whole: off, before: None, after: None };
-        Some(Compared { columns: vec![column], late: None })
+        let off = row.value("energy_error").unwrap_or_default();
+        let each = |known: &Known| Some(vec![Distance { smooth: off, rough: 0.0 }; known.windows.len()]);
+        Some(Compared { groups: reference.known.iter().map(each).collect(), ..Compared::default() })
     };
     let compared: Vec<_> = rows.iter().map(compared).collect();
-    Ranking::of(Goal::Cost, manifest, rows, &compared, Some(&reference))
+    Ranks { manifest, rows, compared: &compared, reference: Some(reference) }.of(goal)
 }
 
-fn by_energy((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
-    Ranking::of(Goal::Energy, manifest, rows, &vec![None; rows.len()], None)
-}
-
-/// 0.049 and 0.051 share a place, and only the dearer one is accurate enough.
-#[test]
-fn accuracy_goes_before_cost() {
-    let ranking = by_energy(&study(&[("cheap", 0, 0.051, 1.0), ("exact", 0, 0.049, 2.0)]));
-    assert_eq!(ranking.levels[0].iter().map(|r| r.place).collect::<Vec<_>>(), [1, 1]);
-    let verdict = ranking.verdict.unwrap();
-    assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (1, vec!["cheap".into()], Confidence::Low));
-}
-
-/// A is first at the coarse level (0.2 against 0.4) and alike at the fine one (0.051 and 0.049); C
-/// is worse than A at the coarse level, and accurate at the fine one.
-#[test]
-fn a_refusal_is_true() {
-    let at_two_levels = |fine: [f64; 2]| {
-        by_energy(&study(&[
-            ("a", 0, 0.2, 1.0),
-            ("c", 0, 0.4, 1.0),
-            ("a", 1, fine[0], 2.0),
-            ("c", 1, fine[1], 2.0),
-        ]))
+/// A reference whose displacements of 1 are known up to 1.25 `off`.
+fn reference(off: f64) -> Reference {
+    let run = |off: f64| {
+        let columns = [("A.uy".to_owned(), vec![0.0, off, 1.0])].into();
+        let metrics = row("", &[("penetration", 0.0)]).metrics;
+        Trajectory { times: vec![0.0, 0.5, 1.0], columns, metrics, ..Trajectory::default() }
     };
-    let refused = |fine: [f64; 2]| at_two_levels(fine).verdict.unwrap_err().join("; ");
-    assert_eq!(
-        refused([0.051, 0.049]),
-        "the method with the best places, a, does not have the required accuracy, 0.05: its smallest error \
-         is 0.051; c 1 has an error of 0.049"
-    );
-    assert_eq!(
-        refused([0.08, 0.0795]),
-        "no arm has the required accuracy, 0.05; the best one, c 1, has an error of 0.0795"
-    );
-    // Each is first at one level; the one that is first at the fine level is named.
-    let verdict = at_two_levels([0.04, 0.01]).verdict.unwrap();
-    assert_eq!((verdict.arm, verdict.alike), (3, vec!["a".into()]));
+    // Triangles of the height h have the norm h/√3; errors of 4, 2 and 1 converge with order 1.
+    let levels = [4.0, 2.0, 1.0].map(|step| Level::single(step, run(step * off * 3.0_f64.sqrt())));
+    Reference::of_levels(String::new(), levels.into()).grouped(&[].into(), &Ok(0.1))
 }
 
-/// With every arm, members of an ensemble with these errors and processor times.
-fn with_members(study: (StudyManifest, Vec<Row>), members: &[&[(f64, f64)]]) -> (StudyManifest, Vec<Row>) {
+fn arms(ranking: &Ranking) -> Vec<(usize, usize)> {
+    ranking.levels.iter().flatten().map(|r| (r.arm, r.place)).collect()
+}
+
+/// With every arm, members of an ensemble with these errors.
+fn with_members(study: (StudyManifest, Vec<Row>), members: &[&[f64]]) -> (StudyManifest, Vec<Row>) {
     let (mut manifest, mut rows) = study;
     let phases = 1 + members.iter().map(|of| of.len()).max().unwrap() as u32;
     manifest.ensemble = Some(Ensemble { phases, swapped: false, mesh: vec![1.0], sets: Vec::new() });
     for (i, members) in members.iter().enumerate() {
-        for (k, (error, cost)) in members.iter().enumerate() {
+        for (k, error) in members.iter().enumerate() {
             let phase = (1.0 + k as f64) / f64::from(phases);
             let member = MemberOf { arm: i, member: Member { phase, swapped: false, mesh: 1.0, set: 0 } };
             let arm = manifest.arms[i].clone();
             manifest.members.push(Arm { role: Role { member: Some(member), ..arm.role.clone() }, ..arm });
-            rows.push(row("member", &[("energy_drift", *error), ("cpu_time", *cost)]));
+            rows.push(row("member", &[("energy_error", *error), ("cost", 1.0)]));
         }
     }
     (manifest, rows)
 }
 
-/// A is accurate in the median, 0.04, but not in one of its members; B costs 8 % more, which is not
-/// distinguished, and C 15 % more than A. What the members cost is of no interest.
-#[test]
-fn cost_is_that_of_the_arm_and_accuracy_that_of_the_median() {
-    let arms = [("a", 0, 0.04, 1.0), ("b", 0, 0.03, 1.08), ("c", 0, 0.01, 1.15), ("d", 0, 0.06, 0.1)];
-    let members: [&[(f64, f64)]; 4] =
-        [&[(0.02, 5.0), (0.07, 7.0)], &[(0.03, 1.0), (0.03, 1.0)], &[(0.01, 1.0); 2], &[(0.06, 0.1); 2]];
-    let ranking = by_cost(&with_members(study(&arms), &members));
-    let found: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place, r.error)).collect();
-    assert_eq!(found, [(0, 1, 0.04), (1, 1, 0.03), (2, 2, 0.01)]);
-    assert!((ranking.levels[0][0].uncertainty - 0.03).abs() < 1e-15);
-    // Of the two that cost the same, the more accurate one is recommended.
-    let verdict = ranking.verdict.unwrap();
-    assert_eq!((verdict.arm, verdict.alike), (1, vec!["a".into()]));
-    assert!(verdict.reasons[0].ends_with("is at most 0.05: 1.08 s"), "{:?}", verdict.reasons);
+fn with(row: &mut Row, name: &'static str, value: f64) {
+    row.metrics.push(Metric { name: name.into(), value: Some(value), ..row.metrics[0].clone() });
 }
 
-/// The median of A is accurate, but one of its members is off by 0.09, more than the accuracy of
-/// 0.05: it is not recommended, and B is not distinguished from it.
+/// An error of 0.049 does not promise 0.05 if the reference is uncertain by 0.0125; 0.03 does.
 #[test]
-fn an_arm_that_scatters_by_more_than_the_accuracy_does_not_have_it() {
-    let of = |arms: &[Made], members: &[&[(f64, f64)]]| by_energy(&with_members(study(arms), members));
-    let a = ("a", 0, 0.01, 1.0);
-    let b = ("b", 0, 0.03, 2.0);
-    let scatters: &[_] = &[(0.01, 1.0), (0.1, 1.0)];
-    let agrees: &[_] = &[(0.03, 2.0); 2];
-    assert_eq!(of(&[a, b], &[scatters, agrees]).verdict.unwrap().arm, 1);
-    let why = of(&[a], &[scatters]).verdict.unwrap_err();
+fn accuracy_is_promised_with_the_uncertainty_included() {
+    let of = |error: f64| by_columns(Goal::Trajectory, &study(&[("a", 0, error, 1.0)]), &reference(0.01));
+    let found = of(0.03);
+    let [low, high] = found.levels[0][0].interval;
+    assert!((low - 0.0175).abs() < 1e-4 && (high - 0.0425).abs() < 1e-4, "{low} {high}");
+    assert_eq!(found.verdict.unwrap().arm, 0);
+    let why = of(0.049).verdict.unwrap_err();
     assert!(
-        why[0].contains("one of which is off it by 0.09, more than the required accuracy, 0.05"),
+        why[0].contains("no arm has the required accuracy, 0.05, with the uncertainty included"),
         "{why:?}"
     );
-    let (manifest, rows) = with_members(study(&[a, b]), &[scatters, agrees]);
-    let ranking = by_cost(&(manifest, rows));
-    assert_eq!(ranking.levels[0].iter().map(|r| r.arm).collect::<Vec<_>>(), [1]);
 }
 
-/// Only members with a value count as evidence: all three, two of three, or one.
+/// Nobody who reads the table can find an arm with a smaller error at no more cost than that of the
+/// recommended one; within 10 % of the lowest cost the error decides.
 #[test]
-fn failed_members_are_no_evidence() {
-    let arms =
-        || study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.04, 1.0), ("a", 1, 0.005, 2.0), ("b", 1, 0.02, 2.0)]);
-    let of = |failed: usize| {
-        let others: [&[(f64, f64)]; 4] =
-            [&[(0.01, 1.0); 2], &[(0.04, 1.0); 2], &[(0.005, 2.0); 2], &[(0.02, 2.0); 2]];
-        let (manifest, mut rows) = with_members(arms(), &others);
-        rows[4..4 + failed].iter_mut().for_each(|row| row.metrics.clear());
-        let ranking = by_energy(&(manifest, rows));
-        let verdict = ranking.verdict.unwrap();
-        assert_eq!((verdict.arm, ranking.levels[0][0].members), (0, 3 - failed));
-        (verdict.confidence, verdict.confidence_reasons.join("; "))
+fn no_arm_of_the_table_beats_the_recommended_one() {
+    let runs = [("a", 0, 0.04, 1.0), ("b", 0, 0.01, 1.05), ("c", 0, 0.03, 1.0), ("d", 1, 0.001, 3.0)];
+    let verdict = by_energy(&study(&runs)).verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.confidence), (1, Confidence::Medium));
+    // Without a required accuracy the most accurate arm is recommended.
+    let (mut manifest, rows) = study(&runs);
+    manifest.accuracy = None;
+    assert_eq!(by_energy(&(manifest, rows)).verdict.unwrap().arm, 3);
+}
+
+/// The order of the arms changes neither places nor recommendation.
+#[test]
+fn the_order_of_the_arms_does_not_matter() {
+    let runs = [("a", 0, 0.02, 1.0), ("b", 0, 0.02, 1.0), ("c", 0, 0.0201, 1.0), ("d", 0, 0.3, 0.5)];
+    let of = |order: [usize; 4]| {
+        let runs = order.map(|i| runs[i]);
+        let study = study(&runs);
+        let found = by_energy(&study);
+        let named = |arm: usize| study.0.arms[arm].name.clone();
+        let table: Vec<_> = found.levels[0].iter().map(|r| (named(r.arm), r.place)).collect();
+        let verdict = found.verdict.unwrap();
+        (table, named(verdict.arm), verdict.alike, verdict.reasons, verdict.confidence_reasons)
     };
-    let mesh = "all arms were computed on the given mesh";
-    let (confidence, why) = of(0);
-    assert_eq!(
-        (confidence, why.contains("members of"), why.contains(mesh)),
-        (Confidence::Medium, false, true)
-    );
-    let (confidence, why) = of(1);
-    assert!(
-        confidence == Confidence::Medium && why.contains("only 2 of 3 members of \"a 0\" have a value"),
-        "{why}"
-    );
-    let (confidence, why) = of(2);
-    assert!(confidence == Confidence::Low && why.contains("the value of a single run"), "{why}");
-}
-
-/// Two of three members created energy. The scatter of an arm with one sound member is not zero,
-/// but that of all: 0.03 from 0.01.
-#[test]
-fn one_sound_member_has_the_scatter_of_all() {
-    let members: [&[(f64, f64)]; 2] = [&[(0.02, 1.0), (0.04, 1.0)], &[(0.03, 1.0); 2]];
-    let (manifest, mut rows) = with_members(study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.03, 1.0)]), &members);
-    for row in &mut rows[2..4] {
-        let created = Metric { name: "energy_created".into(), value: Some(0.5), ..row.metrics[0].clone() };
-        row.metrics.push(created);
+    let first = of([0, 1, 2, 3]);
+    assert_eq!(first.1, "a 0");
+    for order in [[3, 2, 1, 0], [1, 3, 0, 2], [2, 0, 3, 1]] {
+        assert_eq!(of(order), first);
     }
-    let ranking = by_energy(&(manifest, rows));
-    let found: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place, r.members)).collect();
-    assert_eq!(found, [(0, 1, 1), (1, 1, 3)]);
-    let of_a = &ranking.levels[0][0];
-    assert!((of_a.error - 0.01).abs() < 1e-15 && (of_a.uncertainty - 0.03).abs() < 1e-15);
 }
 
-/// Both arms are accurate at the fine level only, where B is cheaper; A is cheaper at the coarse
-/// one.
+/// A scatters between 0.01 and 0.2, which B, at 0.05, does not: the error of an arm is the largest
+/// one of its members.
 #[test]
-fn least_cost_is_looked_for_over_all_levels() {
-    let runs = [("a", 0, 0.2, 0.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.0101, 2.0)];
-    let verdict = by_cost(&study(&runs)).verdict.unwrap();
-    assert!(verdict.arm == 3 && verdict.alike.is_empty(), "{verdict:?}");
-    // A is accurate at both: its coarse arm is the cheapest, though B ranks first at the fine
-    // level.
-    let runs = [("a", 0, 0.04, 1.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.0101, 2.0)];
-    assert_eq!(by_cost(&study(&runs)).verdict.unwrap().arm, 0);
-    let none = by_cost(&study(&[("a", 0, 0.2, 1.0)])).verdict.unwrap_err();
-    assert_eq!(none, ["no arm has the required accuracy, 0.05"]);
+fn scatter_is_not_rewarded() {
+    let runs = study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.05, 1.0)]);
+    let (mut manifest, rows) = with_members(runs, &[&[0.2, 0.02], &[0.05, 0.05]]);
+    manifest.accuracy = None;
+    let ranking = by_energy(&(manifest, rows));
+    assert_eq!(arms(&ranking), [(1, 1), (0, 2)]);
+    let verdict = ranking.verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.alike.len(), verdict.confidence), (1, 0, Confidence::High));
 }
 
-/// B has all results of A: it takes no place from C, and is no competitor of A. With another
-/// result it is both.
+/// 0.03 and 0.05 are not distinguished by a reference that is uncertain by 0.0125; 0.03 and 0.06
+/// are.
+#[test]
+fn places_follow_from_intervals() {
+    let runs = [("a", 0, 0.03, 1.0), ("b", 0, 0.05, 1.0), ("c", 0, 0.06, 1.0)];
+    let ranking = by_columns(Goal::Trajectory, &study(&runs), &reference(0.01));
+    assert_eq!(arms(&ranking), [(0, 1), (1, 1), (2, 2)]);
+    let (mut manifest, rows) = study(&runs);
+    manifest.accuracy = None;
+    let verdict = by_columns(Goal::Trajectory, &(manifest, rows), &reference(0.01)).verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b 0".into()], Confidence::Medium));
+}
+
+/// Arms that created energy, stopped or penetrated are not ranked, and the reason is known.
+#[test]
+fn unsound_arms_are_set_apart() {
+    let runs = [("a", 0, 0.01, 1.0), ("b", 0, 0.01, 1.0), ("c", 0, 0.01, 1.0), ("d", 0, 0.04, 1.0)];
+    let (manifest, mut rows) = study(&runs);
+    with(&mut rows[0], "energy_created", 0.03);
+    rows[1].status = Some(Status::Failed);
+    rows[1].reason = Some("no convergence".into());
+    with(&mut rows[2], "penetration", 0.05);
+    with(&mut rows[3], "penetration", 0.01);
+    let ranking = by_columns(Goal::Cost, &(manifest, rows), &reference(1e-4));
+    let apart: Vec<_> = ranking.apart.iter().map(|apart| (apart.arm, apart.why.as_str())).collect();
+    let known = [
+        "it created 0.03 of the energy",
+        "it stopped (no convergence)",
+        "it penetrates by 0.05, 0.05 of the motion",
+    ];
+    assert_eq!(apart, [(0, known[0]), (1, known[1]), (2, known[2])]);
+    assert_eq!((arms(&ranking), ranking.verdict.unwrap().arm), (vec![(3, 1)], 3));
+}
+
+/// B has all results of A: it takes no place from C, and is not tied with A.
 #[test]
 fn identical_arms_count_once() {
     let found = |b: f64| {
         let runs = [("a", 0, 0.01, 1.0), ("b", 0, b, 1.0), ("c", 0, 0.04, 1.0)];
         let ranking = by_energy(&study(&runs));
-        let places: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place)).collect();
-        (places, ranking.verdict.unwrap().alike)
+        (arms(&ranking), ranking.verdict.unwrap().alike)
     };
     assert_eq!(found(0.01), (vec![(0, 1), (1, 1), (2, 2)], vec![]));
-    assert_eq!(found(0.0101), (vec![(0, 1), (1, 1), (2, 3)], vec!["b".to_owned()]));
+    assert_eq!(found(0.010_000_001).0, [(0, 1), (1, 1), (2, 3)]);
 }
 
-/// Three arms, of which the one with the smallest drift created 3 % of energy; the guard allows 2
-/// %.
+/// The least cost is looked for over all levels.
 #[test]
-fn an_arm_that_creates_energy_is_last_and_not_recommended() {
-    let (manifest, mut rows) = study(&[("a", 0, 0.01, 1.0), ("b", 0, 0.03, 1.0), ("c", 0, 0.04, 1.0)]);
-    let created = |row: &mut Row, share: f64| {
-        row.metrics.push(Metric {
-            name: "energy_created".into(),
-            value: Some(share),
-            ..row.metrics[0].clone()
-        });
+fn least_cost_is_looked_for_over_all_levels() {
+    let runs = [("a", 0, 0.2, 0.5), ("b", 0, 0.2, 1.0), ("a", 1, 0.01, 3.0), ("b", 1, 0.0101, 2.0)];
+    let of = |runs: &[Made]| by_columns(Goal::Cost, &study(runs), &reference(1e-4)).verdict;
+    assert_eq!(of(&runs).unwrap().arm, 3);
+    let none = of(&[("a", 0, 0.2, 1.0)]).unwrap_err();
+    assert!(none[0].contains("the best one, a 0, has an error of 0.2"), "{none:?}");
+}
+
+/// On one mesh nothing is established, so that nothing is recommended; the reason is said.
+#[test]
+fn one_mesh_establishes_nothing() {
+    let run = || Trajectory {
+        times: vec![0.0, 1.0],
+        columns: [("A.uy".to_owned(), vec![0.0, 1.0])].into(),
+        ..Trajectory::default()
     };
-    created(&mut rows[0], 0.03);
-    created(&mut rows[1], 0.019);
-    let ranking = by_energy(&(manifest.clone(), rows.clone()));
-    let found: Vec<_> = ranking.levels[0].iter().map(|r| (r.arm, r.place, r.sound)).collect();
-    assert_eq!(found, [(1, 1, true), (2, 2, true), (0, 3, false)]);
-    assert_eq!(ranking.verdict.unwrap().arm, 1);
-    rows[1..].iter_mut().for_each(|row| created(row, 0.5));
-    rows[1].metrics.remove(2);
-    let why = by_energy(&(manifest, rows)).verdict.unwrap_err();
-    assert_eq!(why, ["no arm that did not create energy has a value for: energy_drift, which should be 0"]);
-}
-
-/// A has the error 0.4/cost. At the coarse step B has 0.3 at the cost 2, where A has 0.2: half
-/// more, which is a change unless the uncertainties are as large. At the fine step A does not reach
-/// the cost of B.
-#[test]
-fn conclusions_change_by_more_than_the_uncertainties() {
-    let runs = [("a", 0, 0.4, 1.0), ("b", 0, 0.3, 2.0), ("a", 1, 0.1, 4.0), ("b", 1, 0.03, 8.0)];
-    let (manifest, rows) = study(&runs);
-    let of = |own: f64, reference: f64| {
-        let ranked = |(arm, place)| Ranked {
-            arm,
-            error: runs[arm].2,
-            uncertainty: own,
-            members: 3,
-            sound: true,
-            place,
-        };
-        let levels = [vec![ranked((1, 1)), ranked((0, 2))], vec![ranked((3, 1)), ranked((2, 2))]];
-        crosscheck::of(&manifest, &rows, &levels, reference)
-    };
-    let found = of(0.0, 0.0);
-    assert_eq!(found.len(), 1);
-    assert_eq!((found[0].at, found[0].value, found[0].first.as_str()), ("cost", 2.0, "b"));
-    assert_eq!((found[0].errors[0].0.as_str(), found[0].better.as_deref()), ("a", Some("a")));
-    assert!((found[0].errors[0].1 - 0.2).abs() < 1e-15);
-    assert_eq!(of(0.04, 0.09)[0].better.as_deref(), Some("a"));
-    assert_eq!((&of(0.06, 0.0)[0].better, &of(0.0, 0.11)[0].better), (&None, &None));
-}
-
-/// Where two arms share the first place, table and check begin with the same one, the cheaper.
-#[test]
-fn the_check_begins_with_the_first_arm_of_the_table() {
-    let runs = [("a", 0, 0.100, 2.0), ("b", 0, 0.102, 1.0), ("a", 1, 0.050, 4.0), ("b", 1, 0.051, 3.0)];
-    let ranking = by_energy(&study(&runs));
-    assert_eq!((ranking.levels[1][0].arm, ranking.levels[1][1].place), (3, 1));
-    let [check] = &ranking.crosschecks[..] else { panic!("{:?}", ranking.crosschecks) };
-    assert_eq!((check.level, check.first.as_str(), check.value, &check.better), (1, "b", 3.0, &None));
-}
-
-/// A is first at the coarse level and shares the first place at the fine one, where B has the
-/// smaller error: it is recommended, but not with high confidence.
-#[test]
-fn a_shared_place_is_not_ranked_first() {
-    let runs = [("a", 0, 0.010, 1.0), ("b", 0, 0.020, 1.0), ("a", 1, 0.0050, 2.0), ("b", 1, 0.0049, 2.0)];
-    let members: [&[(f64, f64)]; 4] =
-        [&[(0.010, 1.0); 2], &[(0.020, 1.0); 2], &[(0.0050, 2.0); 2], &[(0.0049, 2.0); 2]];
-    let (mut manifest, rows) = with_members(study(&runs), &members);
-    manifest.ensemble.as_mut().unwrap().mesh = vec![1.0, 2.0];
-    let verdict = by_energy(&(manifest, rows)).verdict.unwrap();
-    assert_eq!((verdict.arm, verdict.confidence), (0, Confidence::Medium));
-    let why = verdict.confidence_reasons.join("; ");
-    assert!(why.contains("at 1 of 2 levels b is not distinguished from it"), "{why}");
-}
-
-/// B is better at the coarse level, where A is recommended, because B created energy at the fine
-/// one.
-#[test]
-fn why_the_smaller_error_does_not_win_is_said() {
-    let runs = [("a", 0, 0.020, 1.0), ("b", 0, 0.010, 1.0), ("a", 1, 0.008, 2.0), ("b", 1, 0.005, 2.0)];
-    let (manifest, mut rows) = study(&runs);
-    let created = Metric { name: "energy_created".into(), value: Some(0.5), ..rows[3].metrics[0].clone() };
-    rows[3].metrics.push(created);
-    let verdict = by_energy(&(manifest, rows)).verdict.unwrap();
-    assert_eq!(verdict.arm, 0);
-    let why = verdict.reasons.join("; ");
-    assert!(why.contains("b has a smaller error at this level, 0.01, but b 1 created energy"), "{why}");
-}
-
-/// Costs that were matched by counting are equal, whatever the processor times: nothing decides.
-#[test]
-fn measured_times_do_not_decide_between_matched_costs() {
-    let (mut manifest, rows) = study(&[("a", 0, 0.0100, 2.0), ("b", 0, 0.0101, 1.0)]);
-    assert_eq!(by_energy(&(manifest.clone(), rows.clone())).verdict.unwrap().arm, 1);
-    manifest.design.as_mut().unwrap().kind = Kind::MatchedCost;
-    let verdict = by_energy(&(manifest, rows)).verdict.unwrap();
-    assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b".into()], Confidence::Low));
-    assert!(!verdict.reasons.iter().any(|why| why.contains("processor time")), "{:?}", verdict.reasons);
+    let level = |step: f64| Level { step, mesh: 1.0, phases: 1, members: vec![run()] };
+    let reference = Reference::of_levels(String::new(), vec![level(4.0), level(2.0), level(1.0)]);
+    let reference = reference.grouped(&[].into(), &Ok(0.1));
+    let why = by_columns(Goal::Trajectory, &study(&[("a", 0, 0.01, 1.0)]), &reference).verdict.unwrap_err();
+    assert!(why[0].contains("its mesh was not refined"), "{why:?}");
 }

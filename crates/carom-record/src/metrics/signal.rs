@@ -1,0 +1,182 @@
+//! Distance of two records in a vector quantity, apart from its rough part.
+//!
+//! ```text
+//! e = a − b,   ⟨e⟩(t) = [E(t + w/2) − E(t − w/2)]/w     E: the integral of e, for forces the recorded impulse
+//! smooth = ‖⟨e⟩‖,   rough = ‖e − ⟨e⟩‖,   ‖e‖² = 1/T ∫ |e|² dt over the span that both have in common
+//! ```
+//!
+//! Both have limits under refinement of step and mesh, unlike the total variation of a stress or a
+//! contact force. Without a window, ⟨e⟩ = e.
+
+use super::samples::{at, integral};
+
+/// Least and largest number of equal parts of the span that norms are sums over.
+const PARTS: (f64, f64) = (4099.0, 65_537.0);
+/// Parts of a window.
+const PER_WINDOW: f64 = 8.0;
+/// Parts of a row; no simple fraction, so that an oscillation from row to row is seen at all
+/// phases.
+const PER_ROW: f64 = 1.373;
+
+/// Components of a vector quantity over time, with their integrals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Signal<'a> {
+    times: &'a [f64],
+    values: Vec<&'a [f64]>,
+    integrals: Vec<Vec<f64>>,
+    /// Whether the integrals were recorded: their rate is then constant between rows.
+    recorded: bool,
+}
+
+/// Norms of a difference of two signals.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Distance {
+    /// Norm of the average over the window.
+    pub smooth: f64,
+    /// Norm of what the average leaves out.
+    pub rough: f64,
+}
+
+impl Distance {
+    /// Both norms divided by a scale.
+    #[must_use]
+    pub fn relative_to(self, scale: f64) -> Self {
+        Self { smooth: self.smooth / scale, rough: self.rough / scale }
+    }
+}
+
+impl<'a> Signal<'a> {
+    /// A signal that is integrated with the trapezoidal rule.
+    pub fn of(times: &'a [f64], values: Vec<&'a [f64]>) -> Self {
+        let integrals = values.iter().map(|x| integral(times, x)).collect();
+        Self { times, values, integrals, recorded: false }
+    }
+
+    /// A signal whose integrals were recorded, one per component.
+    #[must_use]
+    pub fn with_integrals(self, integrals: Vec<Vec<f64>>) -> Self {
+        Self { integrals, recorded: true, ..self }
+    }
+
+    /// Integral of a component up to a time; that of values is exact for values linear between
+    /// rows.
+    fn sum(&self, component: usize, time: f64) -> Option<f64> {
+        let sums = &self.integrals[component];
+        if self.recorded {
+            return at(self.times, sums, time);
+        }
+        let row = self.times.partition_point(|t| *t <= time).checked_sub(1)?;
+        let values = self.values[component];
+        let mean = f64::midpoint(values[row], at(self.times, values, time)?);
+        Some(sums[row] + mean * (time - self.times[row]))
+    }
+
+    /// Value and average of a component at a time; the window is cut at the ends of the record.
+    fn around(&self, component: usize, time: f64, window: f64) -> Option<[f64; 2]> {
+        let value = at(self.times, self.values[component], time)?;
+        let from = (time - window / 2.0).max(*self.times.first()?);
+        let to = (time + window / 2.0).min(*self.times.last()?);
+        if to <= from {
+            return Some([value; 2]);
+        }
+        Some([value, (self.sum(component, to)? - self.sum(component, from)?) / (to - from)])
+    }
+
+    /// Distance from another signal with the same components; none if they have no span in common.
+    pub fn distance(&self, other: &Self, window: f64) -> Option<Distance> {
+        let first = self.times.first()?.max(*other.times.first()?);
+        let last = self.times.last()?.min(*other.times.last()?);
+        if last <= first || self.values.is_empty() || self.values.len() != other.values.len() {
+            return None;
+        }
+        let of_windows = if window > 0.0 { PER_WINDOW * (last - first) / window } else { 0.0 };
+        let of_rows = PER_ROW * self.times.len().max(other.times.len()) as f64;
+        let parts = of_windows.max(of_rows).ceil().clamp(PARTS.0, PARTS.1);
+        let mut sums = [0.0; 2];
+        for k in 0..parts as usize {
+            let time = first + (k as f64 + 0.5) / parts * (last - first);
+            for component in 0..self.values.len() {
+                let [value, mean] = self.around(component, time, window)?;
+                let [known, known_mean] = other.around(component, time, window)?;
+                let error = value - known;
+                let smooth = mean - known_mean;
+                sums[0] += smooth * smooth;
+                sums[1] += (error - smooth).powi(2);
+            }
+        }
+        let [smooth, rough] = sums.map(|sum| (sum / parts).sqrt());
+        Some(Distance { smooth, rough })
+    }
+
+    /// Norms of the signal itself.
+    pub fn norms(&self, window: f64) -> Option<Distance> {
+        let zero = vec![0.0; self.times.len()];
+        let none = Signal::of(self.times, vec![&zero; self.values.len()]);
+        self.distance(&none, window)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    fn sampled(n: u32, f: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let times: Vec<f64> = (0..=n).map(|i| f64::from(i) / f64::from(n)).collect();
+        let values = times.iter().map(|t| f(*t)).collect();
+        (times, values)
+    }
+
+    /// Exact: t against t + 3 has the smooth distance 3 and no rough one; two components of 3 and 4
+    /// have 5.
+    #[test]
+    fn an_offset_is_smooth() {
+        let (times, values) = sampled(10, |t| t);
+        let (fine, known) = sampled(37, |t| t + 3.0);
+        let far = sampled(37, |t| t + 4.0).1;
+        let one = Signal::of(&times, vec![&values]).distance(&Signal::of(&fine, vec![&known]), 0.1).unwrap();
+        assert!((one.smooth - 3.0).abs() < 1e-12 && one.rough < 1e-12, "{one:?}");
+        let two = Signal::of(&times, vec![&values; 2]).distance(&Signal::of(&fine, vec![&known, &far]), 0.0);
+        assert!((two.unwrap().smooth - 5.0).abs() < 1e-12);
+    }
+
+    /// An oscillation of 64 cycles averages out over two of them: it is noise, of the norm 1/√2.
+    /// Steps and rows may be halved without end: the norms stay, where the total variation of an
+    /// alternating signal doubles.
+    #[test]
+    fn an_oscillation_is_rough_and_has_a_limit() {
+        for rows in [2048, 4096, 8192] {
+            let (times, values) = sampled(rows, |t| (64.0 * TAU * t).sin());
+            let found = Signal::of(&times, vec![&values]).norms(2.0 / 64.0).unwrap();
+            assert!((found.rough - 0.5_f64.sqrt()).abs() < 5e-3 && found.smooth < 0.03, "{found:?}");
+            let alternating: Vec<f64> = (0..=rows).map(|i| 1.0 - 2.0 * f64::from(i % 2)).collect();
+            let found = Signal::of(&times, vec![&alternating]).norms(1.0 / 16.0).unwrap();
+            assert!(found.smooth < 0.02 && (found.rough - (1.0_f64 / 3.0).sqrt()).abs() < 0.03, "{found:?}");
+        }
+    }
+
+    /// A recorded impulse replaces the integral of the rows: rows that miss a spike of the impulse
+    /// 1 do not hide it.
+    #[test]
+    fn impulses_are_those_recorded() {
+        let (times, values) = sampled(100, |_| 0.0);
+        let impulse = times.iter().map(|t| if *t < 0.5 { 0.0 } else { 1.0 }).collect();
+        let struck = Signal::of(&times, vec![&values]).with_integrals(vec![impulse]);
+        let found = struck.norms(0.25).unwrap();
+        // ⟨F⟩ is 4 over a window of 1/4: ‖·‖² = 16/4.
+        assert!((found.smooth - 2.0).abs() < 0.03, "{found:?}");
+    }
+
+    /// An exact square pulse has a rough part, which is no fault of a history that has it too.
+    #[test]
+    fn the_same_jump_is_no_noise() {
+        let pulse = |t: f64| f64::from((0.25..0.75).contains(&t));
+        let (times, values) = sampled(1000, pulse);
+        let (fine, known) = sampled(4000, pulse);
+        let one = Signal::of(&times, vec![&values]);
+        assert!(one.norms(1.0 / 32.0).unwrap().rough > 0.05);
+        let found = one.distance(&Signal::of(&fine, vec![&known]), 1.0 / 32.0).unwrap();
+        assert!(found.rough < 0.02 && found.smooth < 5e-3, "{found:?}");
+    }
+}

@@ -1,0 +1,214 @@
+//! The recommendation that follows from a ranking, with its confidence, or why there is none.
+//!
+//! ```text
+//! accurate      `accuracy` given: e + U ≤ accuracy;   otherwise: not distinguished from the most accurate arm, or within 5 %
+//! candidates    accurate, and no arm has a smaller error at no more cost
+//! recommended   of the candidates within 10 % of the lowest cost, the one with the smallest error
+//! ```
+
+use serde::Serialize;
+
+use super::design::Goal;
+use super::digits::short;
+use super::manifest::StudyManifest;
+use super::measure::Measure;
+use super::ranked::{Apart, Ranked};
+
+/// Factor within which counted costs are equal.
+const EQUAL_COST: f64 = 1.1;
+/// Factor within which errors are equal.
+const EQUAL_ERROR: f64 = 1.05;
+/// Factor by which an error is clearly smaller than that of another arm.
+const CLEAR: f64 = 1.5;
+
+/// Confidence in a recommendation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Confidence {
+    /// Another arm of the same cost may be as good.
+    Low,
+    /// The arm is the best of its cost in this study.
+    Medium,
+    /// The arm is the best of its cost by more than all uncertainties, over an ensemble.
+    High,
+}
+
+impl Confidence {
+    /// The confidence as a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::Medium => "medium",
+            Self::High => "high",
+        }
+    }
+}
+
+/// The recommendation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Number of the recommended arm.
+    pub arm: usize,
+    /// Arms of other methods that are not distinguished from it and cost no more, by name.
+    pub alike: Vec<String>,
+    /// Reasons for the recommendation.
+    pub reasons: Vec<String>,
+    /// Confidence in the recommendation.
+    pub confidence: Confidence,
+    /// Reasons for the confidence.
+    pub confidence_reasons: Vec<String>,
+}
+
+/// The ranked arms of a study, of all levels.
+pub(super) struct Field<'a> {
+    pub(super) goal: Goal,
+    pub(super) manifest: &'a StudyManifest,
+    pub(super) measure: &'a Measure,
+    pub(super) apart: &'a [Apart],
+    /// Whether two arms have the same results.
+    pub(super) is_twin: &'a dyn Fn(usize, usize) -> bool,
+    /// Whether every arm has several members.
+    pub(super) is_repeated: bool,
+    pub(super) ranked: Vec<&'a Ranked>,
+}
+
+impl<'a> Field<'a> {
+    fn name(&self, ranked: &Ranked) -> &'a str {
+        &self.manifest.arms[ranked.arm].name
+    }
+
+    /// The arm with the least value, of equal ones the first by name.
+    fn least(&self, arms: impl Iterator<Item = &'a Ranked>, value: fn(&Ranked) -> f64) -> Option<&'a Ranked> {
+        arms.min_by(|a, b| value(a).total_cmp(&value(b)).then_with(|| self.name(a).cmp(self.name(b))))
+    }
+
+    /// The accuracy that an arm must have, if one is required.
+    fn required(&self) -> Option<f64> {
+        if self.goal == Goal::Cost { Some(self.manifest.accuracy()) } else { self.manifest.accuracy }
+    }
+
+    /// Whether no arm has a smaller error at no more cost.
+    fn is_on_front(&self, ranked: &Ranked) -> bool {
+        let beats = |other: &&Ranked| {
+            let is_as_good = other.error <= ranked.error && other.cost <= ranked.cost;
+            is_as_good && (other.error < ranked.error || other.cost < ranked.cost)
+        };
+        !self.ranked.iter().any(beats)
+    }
+
+    /// Arms of other methods that cost no more than an arm, up to what counts as equal.
+    fn rivals(&self, chosen: &'a Ranked) -> impl Iterator<Item = &'a Ranked> {
+        let method = |ranked: &Ranked| self.manifest.arms[ranked.arm].method();
+        let is_rival = move |r: &Ranked| {
+            let is_other = method(r) != method(chosen) && !(self.is_twin)(r.arm, chosen.arm);
+            is_other && r.cost <= EQUAL_COST * chosen.cost
+        };
+        self.ranked.iter().copied().filter(move |r| is_rival(r))
+    }
+}
+
+/// Error of an arm with its interval, in words.
+fn known(ranked: &Ranked) -> String {
+    let [low, high] = ranked.interval;
+    format!("{} ({} to {})", short(ranked.error), short(low), short(high))
+}
+
+/// The recommendation, or the reasons why there is none.
+pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
+    let all = || field.ranked.iter().copied();
+    let Some(best) = field.least(all(), |r| r.error) else {
+        let apart = |apart: &Apart| format!("{}: {}", field.manifest.arms[apart.arm].name, apart.why);
+        let nothing = format!("no arm has a value for: {}", field.measure.words);
+        return Err(std::iter::once(nothing).chain(field.apart.iter().map(apart)).collect());
+    };
+    let required = field.required();
+    let is_accurate = |r: &&Ranked| match required {
+        Some(accuracy) => r.interval[1] <= accuracy,
+        None => r.interval[0] <= EQUAL_ERROR * best.interval[1],
+    };
+    let candidates = || all().filter(|r| is_accurate(r) && field.is_on_front(r));
+    let Some(cheapest) = field.least(candidates(), |r| r.cost) else {
+        let accuracy = required.unwrap_or_default();
+        return Err(vec![format!(
+            "no arm has the required accuracy, {accuracy}, with the uncertainty included; the best one, {}, has \
+             an error of {}",
+            field.name(best),
+            known(best)
+        )]);
+    };
+    let affordable = candidates().filter(|r| r.cost <= EQUAL_COST * cheapest.cost);
+    let chosen = field.least(affordable, |r| r.error).unwrap_or(cheapest);
+    let mut alike: Vec<&str> = field
+        .rivals(chosen)
+        .filter(|r| r.interval[0] <= chosen.interval[1] && is_accurate(r))
+        .map(|r| field.name(r))
+        .collect();
+    alike.sort_unstable();
+    let (confidence, confidence_reasons) = confidence(field, chosen);
+    Ok(Verdict {
+        arm: chosen.arm,
+        alike: alike.into_iter().map(str::to_owned).collect(),
+        reasons: reasons(field, chosen, best),
+        confidence,
+        confidence_reasons,
+    })
+}
+
+fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
+    let mut reasons = vec![format!("{}: {}", field.measure.words, known(chosen))];
+    reasons.push(match field.required() {
+        Some(accuracy) => {
+            format!("least cost of the arms with an error of at most {accuracy}, its uncertainty included")
+        }
+        None if best.arm == chosen.arm => "no arm has a smaller error".to_owned(),
+        None => format!(
+            "least cost of the arms that are not distinguished from the most accurate one, {}: {}",
+            field.name(best),
+            known(best)
+        ),
+    });
+    reasons.push("no arm has a smaller error at no more cost".to_owned());
+    if !field.measure.left_out.is_empty() {
+        let left_out = field.measure.left_out.join("; ");
+        reasons.push(format!("not established by the reference, and left out: {left_out}"));
+    }
+    reasons
+}
+
+/// Confidence that no other method is better at the cost of an arm, with the reasons that lower it.
+fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<String>) {
+    let mut confidence = Confidence::High;
+    let mut reasons = Vec::new();
+    let mut at_most = |most: Confidence, why: String| {
+        confidence = confidence.min(most);
+        reasons.push(why);
+    };
+    match field.least(field.rivals(chosen), |r| r.error) {
+        None => at_most(Confidence::Medium, "no other method was run at this cost".to_owned()),
+        Some(next) if next.interval[0] <= EQUAL_ERROR * chosen.interval[1] => {
+            let is_clear = next.error > CLEAR * chosen.error;
+            let most = if is_clear { Confidence::Medium } else { Confidence::Low };
+            let why = format!("not distinguished from {}: {}", field.name(next), known(next));
+            at_most(most, why);
+        }
+        Some(_) => {}
+    }
+    if let Some(accuracy) = field.required() {
+        let cheaper = field.ranked.iter().filter(|r| EQUAL_COST * r.cost < chosen.cost);
+        let open = field.least(cheaper.copied().filter(|r| r.interval[0] <= accuracy), |r| r.cost);
+        if let Some(open) = open {
+            let why =
+                format!("{}, which costs less, may have the accuracy too: {}", field.name(open), known(open));
+            at_most(Confidence::Medium, why);
+        }
+    }
+    if !field.is_repeated {
+        let why = "there are arms with the value of a single run, so that chance cannot be distinguished from the \
+                   method; [ensemble] runs every arm with several phases, roles and meshes";
+        at_most(Confidence::Medium, why.to_owned());
+    }
+    if reasons.is_empty() {
+        reasons.push("its interval is below those of all other methods at its cost".to_owned());
+    }
+    (confidence, reasons)
+}
