@@ -1,5 +1,6 @@
-//! Eigenvalues and eigenvectors of a symmetric tensor by Jacobi's rotations (C. G. J. Jacobi, J. reine angew. Math.
-//! 30, 1846; the stable formulas of G. H. Golub and C. F. Van Loan, *Matrix Computations*, § 8.5).
+//! Eigenvalues and eigenvectors of a symmetric tensor by Jacobi's rotations (C. G. J. Jacobi, J.
+//! reine angew. Math. 30, 1846; the stable formulas of G. H. Golub and C. F. Van Loan, *Matrix
+//! Computations*, § 8.5).
 
 use crate::small::Mat;
 

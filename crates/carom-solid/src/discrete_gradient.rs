@@ -20,16 +20,16 @@
 //! W₁ − W₀ − S(E_m):ΔE = 5/18 [S(E₊) + S(E₋) − 2 S(E_m)]:ΔE,   E± = E_m ± √(3/5) ΔE/2
 //! ```
 //!
-//! Where flow begins within a step, the incremental potential W = W* − ψ of a law that yields has no
-//! second derivative. The smooth part W*, without flow in the step, is integrated so; what flow
+//! Where flow begins within a step, the incremental potential W = W* − ψ of a law that yields has
+//! no second derivative. The smooth part W*, without flow in the step, is integrated so; what flow
 //! releases, ψ, is known in closed form:
 //!
 //! ```text
 //! W₁ − W₀ − S(E_m):ΔE = 5/18 [S*(E₊) + S*(E₋) − 2 S*(E_m)]:ΔE − (ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE
 //! ```
 //!
-//! In plane stress, where the thickness without flow is another one, the work of a step with flow is
-//! the difference of the energies.
+//! In plane stress, where the thickness without flow is another one, the work of a step with flow
+//! is the difference of the energies.
 
 use carom_algebra::Mat;
 

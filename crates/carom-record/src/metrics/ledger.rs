@@ -63,8 +63,8 @@ pub(super) fn by_friction(given: &Given) -> Option<f64> {
     share(given, "friction_work").map(|work| 0.0 - work)
 }
 
-/// Energy dissipated by plastic flow, divided by the largest kinetic + strain energy; none of elastic
-/// bodies.
+/// Energy dissipated by plastic flow, divided by the largest kinetic + strain energy; none of
+/// elastic bodies.
 pub(super) fn by_flow(given: &Given) -> Option<f64> {
     share(given, "plastic_work").map(|work| 0.0 - work)
 }

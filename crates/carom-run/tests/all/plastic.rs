@@ -1,5 +1,5 @@
-//! Runs of metal that yields: the ledger with every scheme, the same bits when resumed, bisected, on
-//! several threads and reduced, contact with friction, order in time.
+//! Runs of metal that yields: the ledger with every scheme, the same bits when resumed, bisected,
+//! on several threads and reduced, contact with friction, order in time.
 
 use carom_run::{GridReport, Setup, Simulation};
 

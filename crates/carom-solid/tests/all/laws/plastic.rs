@@ -151,8 +151,8 @@ fn plastic_volume<const D: usize>(memory: &[f64]) -> f64 {
     c.det() * across.powi(3 - D as i32)
 }
 
-/// Plane stress: the derivatives of a step, with every kind of hardening; nothing presses across; it
-/// is isochoric flow as in space.
+/// Plane stress: the derivatives of a step, with every kind of hardening; nothing presses across;
+/// it is isochoric flow as in space.
 #[test]
 fn sheets_flow_without_stress_across() {
     let voce = Hardening::Voce { yield_stress: 0.15, modulus: 0.1, rise: 0.2, rate: 9.0 };
