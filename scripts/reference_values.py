@@ -429,6 +429,10 @@ def stopping(density=2700.0, strength=1e8):
     """Rings and shells that are thrown outwards and stopped by plastic flow, rigid before: all kinetic energy
     becomes plastic work. Thin ring: r'' = −Y/(ρ r)."""
     start, speed = 0.1, 150.0
+    specific = density * speed**2 / 2
+    strain = brentq(lambda strain: strength * strain + strength * strain**2 - specific, 0, 1, xtol=1e-15)
+    end = start * np.exp(strain)
+    print(f"thin ring, H = 2Y: stops at {end:.12f}, dissipates {strength * strain / specific:.9f} of its energy")
     end = start * np.exp(density * speed**2 / (2 * strength))
     # With r = end exp(−s²) and v² = (2Y/ρ) s².
     rate = np.sqrt(2 * strength / density)
