@@ -27,6 +27,7 @@ impl<'a> Check<'a> {
         let between = |path: &str| path.starts_with("contact[") && path.contains("].between");
         let complete = !self.problems.iter().any(|p| p.at_key || between(&p.path))
             && draft.probe.iter().all(Option::is_some)
+            && draft.material.iter().all(Option::is_some)
             && draft.body.iter().all(Option::is_some)
             && draft.contact.iter().all(Option::is_some)
             && draft.support.iter().all(Option::is_some);

@@ -27,7 +27,7 @@ const FLOOR: &str = r#"
 name = "floor"
 secondary = "block.skin"
 primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
-friction = 0.2
+mu = 0.2
 "#;
 
 fn timed(scheme: &str, step: f64, end: f64) -> String {
@@ -65,16 +65,18 @@ fn energy_and_momentum_leave_nothing_to_the_integrator() {
     }
 }
 
-/// What every scheme books is the plastic work of the law, Y Σ Δα, up to the error of its mean
-/// forces; the sum closes by construction.
+/// What every scheme books approaches the plastic work of the law. Of one-step schemes the error of
+/// their mean forces is of first order.
 #[test]
 fn every_scheme_books_the_work_of_flow() {
-    let reference = finish(simulation(&flight("{ kind = \"energy-momentum\" }", 5e-4), &[""; 0]));
+    let reference = finish(simulation(&flight("{ kind = \"energy-momentum\" }", 2e-3), &[""; 0]));
     let expected = reference.state().ledger.materials;
     for (scheme, _) in schemes(false).filter(|(scheme, _)| !scheme.contains("static")) {
-        let run = finish(simulation(&flight(&scheme, 2e-3), &["body.block.mass=\"lumped\""]));
-        let booked = run.state().ledger.materials;
-        assert!((booked / expected - 1.0).abs() < 0.05, "{scheme}: {booked} {expected}");
+        let errors = [8e-3, 4e-3].map(|step| {
+            let run = finish(simulation(&flight(&scheme, step), &["body.block.mass=\"lumped\""]));
+            (run.state().ledger.materials / expected - 1.0).abs()
+        });
+        assert!(errors[1] < 0.15 && errors[1] < 0.7 * errors[0] + 5e-3, "{scheme}: {errors:?}");
     }
 }
 
