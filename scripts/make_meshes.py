@@ -714,6 +714,89 @@ def cylinders():
     return mesh.file(repr)
 
 
+# cases/plastic
+
+
+def quarter_ring(inner, outer, count, rows):
+    """A quarter of a ring about the origin, six-node triangles. Surface `ring`; curves `inner`, `outer`,
+    `bottom` (y = 0) and `left` (x = 0)."""
+    mesh = Mesh()
+
+    def place(a, b):
+        radius = inner + (outer - inner) * b / rows
+        angle = pi / 2 * a / count
+        return (0.0 if a == count else radius * cos(angle), radius * sin(angle))
+
+    grid = Grid(mesh, place)
+    mesh.add(2, "ring", grid.triangles(columns(count, rows), CLOCKWISE))
+    mesh.add(1, "inner", grid.line((a, 0) for a in range(2 * count, -1, -1)))
+    mesh.add(1, "outer", grid.line((a, 2 * rows) for a in range(2 * count + 1)))
+    mesh.add(1, "bottom", grid.line((0, b) for b in range(2 * rows + 1)))
+    mesh.add(1, "left", grid.line((2 * count, b) for b in range(2 * rows, -1, -1)))
+    return mesh.file()
+
+
+def eighth_shell(inner, outer, count, layers):
+    """An eighth of a thick spherical shell about the origin, ten-node tetrahedra: a spherical triangle of
+    count² triangles, and layers of prisms of three tetrahedra. Volume `shell`; surfaces `inner`, `outer`,
+    `plane_x`, `plane_y` and `plane_z`."""
+    mesh = Mesh()
+
+    def node(point):
+        # Twice the lattice: the corners of cells are even.
+        i, j, layer = point
+        direction = (2 * count - i - j, i, j)
+        norm = sum(x * x for x in direction) ** 0.5
+        radius = inner + (outer - inner) * layer / (2 * layers)
+        return mesh.node(point, tuple(radius * x / norm for x in direction))
+
+    def cell(corners, pairs):
+        middles = [tuple((a + b) // 2 for a, b in zip(corners[m], corners[n])) for m, n in pairs]
+        return [node(point) for point in [*corners, *middles]]
+
+    def triangle(corners):
+        return cell(corners, [(0, 1), (1, 2), (2, 0)])
+
+    flat = []
+    for i, j in itertools.product(range(count), range(count)):
+        if i + j < count:
+            flat.append([(i, j), (i + 1, j), (i, j + 1)])
+        if i + j < count - 1:
+            flat.append([(i + 1, j), (i + 1, j + 1), (i, j + 1)])
+    volume = []
+    sides = {name: [] for name in ("inner", "outer", "plane_x", "plane_y", "plane_z")}
+    in_plane = {
+        "plane_x": lambda p: p[0] + p[1] == 2 * count,
+        "plane_y": lambda p: p[0] == 0,
+        "plane_z": lambda p: p[1] == 0,
+    }
+    for layer in range(layers):
+        for corners in flat:
+            low = [(2 * i, 2 * j, 2 * layer) for i, j in corners]
+            high = [(2 * i, 2 * j, 2 * layer + 2) for i, j in corners]
+            # In the order of the lattice, so that the diagonals of neighbours agree.
+            order = sorted(range(3), key=lambda k: low[k])
+            a, b, c = (low[k] for k in order)
+            d, e, f = (high[k] for k in order)
+            turned = order in ([0, 1, 2], [1, 2, 0], [2, 0, 1])
+            for tetrahedron in ((a, b, c, f), (a, b, f, e), (a, e, f, d)):
+                four = list(tetrahedron) if turned else [tetrahedron[k] for k in (1, 0, 2, 3)]
+                volume.append(cell(four, [(0, 1), (1, 2), (2, 0), (0, 3), (2, 3), (1, 3)]))
+                for face in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)):
+                    points = [four[k] for k in face]
+                    ends = {0: "inner", 2 * layers: "outer"}
+                    heights = {point[2] for point in points}
+                    if len(heights) == 1 and (name := ends.get(heights.pop())):
+                        sides[name].append(triangle(points))
+                    for name, holds in in_plane.items():
+                        if all(map(holds, points)):
+                            sides[name].append(triangle(points))
+    mesh.add(3, "shell", volume)
+    for name, faces in sides.items():
+        mesh.add(2, name, faces)
+    return mesh.file(rounded(15))
+
+
 # cases/invariance
 
 # Nodes of triangles of order 1 to 3, by Gmsh's types, from the next corner on, and reversed.
@@ -820,6 +903,10 @@ def recipes(carom):
         "cases/space/sector.msh": lambda: written(SECTOR, 2),
         "cases/space/eighth-quadratic.msh": lambda: written(EIGHTH, 2),
         "cases/space/eighth-cubic.msh": lambda: written(EIGHTH, 3, FORMATS["41_binary"]),
+        "cases/plastic/thin-ring.msh": lambda: quarter_ring(0.0995, 0.1005, 8, 1),
+        "cases/plastic/thick-ring.msh": lambda: quarter_ring(1.0, 2.0, 12, 12),
+        "cases/plastic/shell.msh": lambda: eighth_shell(1.0, 2.0, 6, 6),
+        "cases/plastic/thin-shell.msh": lambda: eighth_shell(0.1, 0.11, 4, 1),
         "cases/static/ring.msh": lambda: written("cases/static/ring.geo"),
         "cases/static/cylinders.msh": cylinders,
         "cases/gmsh/impact.msh": lambda: written(IMPACT, 3),

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Reference values of the verification, computed from published formulas without any code of Carom.
 
-    scripts/reference_values.py bar|oblique|ring|static        (needs: pip install numpy scipy)
+    scripts/reference_values.py bar|oblique|plastic|ring|static        (needs: pip install numpy scipy)
 
 bar        cases/bar: an elastic bar strikes a rigid wall, by schemes of the alpha family
 oblique    cases/space/spheres-rub.toml: tangential impulse of an oblique impact with friction
+plastic    cases/plastic: a bar beyond its largest force, shells and rings that yield
 ring       cases/self/crushed.toml: the pressure at which a thin ring touches itself
 static     cases/static: homogeneous states, elastica, Lamé's ring, inflation of a neo-Hookean ring
 """
@@ -13,7 +14,7 @@ import itertools
 import sys
 
 import numpy as np
-from scipy.integrate import solve_bvp
+from scipy.integrate import quad, solve_bvp
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
@@ -348,7 +349,122 @@ def static():
     inflation(40.0)
 
 
-TABLES = {"bar": bar, "oblique": oblique, "ring": ring, "static": static}
+def largest_force(young=206.9, poisson=0.29):
+    """A bar with yield stress 0.45 + 0.265 (1 − exp(−16.93 α)) + 0.12924 α in logarithmic strains: the
+    force per undeformed area, τ exp(−ln λ) with ln λ = α + τ/E, is largest at this α."""
+
+    def strength(alpha):
+        return 0.45 + 0.265 * (1 - np.exp(-16.93 * alpha)) + 0.12924 * alpha
+
+    def slope(alpha):
+        rise = 0.265 * 16.93 * np.exp(-16.93 * alpha) + 0.12924
+        return rise - strength(alpha) * (1 + rise / young)
+
+    alpha = brentq(slope, 0.01, 1.0, xtol=1e-15)
+    tau = strength(alpha)
+    stretch = np.exp(alpha + tau / young)
+    across = np.exp(-alpha / 2 - poisson * tau / young)
+    print(f"bar: largest force {tau / stretch:.9f} at α = {alpha:.9f}, λ = {stretch:.9f}, across {across:.9f}")
+
+
+def yielding_sphere(young=21000.0, poisson=0.3, strength=0.24, inner=1.0, outer=2.0):
+    """Perfectly plastic thick sphere under inner pressure, small strains (R. Hill, The Mathematical Theory
+    of Plasticity, 1950, §V.2): yields up to c with p = 2Y ln(c/a) + (2Y/3)(1 − c³/b³)."""
+    for pressure in (0.20, 0.25, 0.30):
+
+        def excess(c):
+            return 2 * strength * (np.log(c / inner) + (1 - (c / outer) ** 3) / 3) - pressure
+
+        c = brentq(excess, inner, outer, xtol=1e-14)
+        moved = strength * c**3 * (1 - poisson) / (young * outer**2)
+        # σ_φ − σ_r = Y where it yields, σ_r = −p inside.
+        hoop = strength - pressure
+        # Unloading is elastic: Lamé's hoop stress at the inner surface is p (a³ + b³/2)/(b³ − a³).
+        hoop -= pressure * (inner**3 + outer**3 / 2) / (outer**3 - inner**3)
+        print(f"sphere, p = {pressure}: c = {c:.7f}, u(outer) = {moved:.9e}, hoop stress left {hoop:.7f}")
+
+
+def yielding_ring(young=21000.0, poisson=0.3, strength=0.24, inner=1.0, outer=2.0, cells=200):
+    """The same of a thick ring in plane strain, by linear cells in radius with radial return: the
+    displacement of its outer surface."""
+    radii = np.linspace(inner, outer, cells + 1)
+    middle = (radii[1:] + radii[:-1]) / 2
+    size = np.diff(radii)
+    shear = young / (2 * (1 + poisson))
+    bulk = young / (3 * (1 - 2 * poisson))
+    # ε_r, ε_φ from the displacements of both nodes.
+    slopes = np.array([[-1 / size, 1 / size], [0.5 / middle, 0.5 / middle]])
+    moduli = np.full((2, 2), bulk - 2 * shear / 3) + 2 * shear * np.eye(2)
+    matrix = np.zeros((cells + 1, cells + 1))
+    for k in range(cells):
+        local = slopes[:, :, k]
+        matrix[k : k + 2, k : k + 2] += middle[k] * size[k] * local.T @ moduli @ local
+    inverse = np.linalg.inv(matrix)
+    u = np.zeros(cells + 1)
+    plastic = np.zeros((3, cells))
+    for pressure in np.linspace(0.0, 0.18, 361)[1:]:
+        for _ in range(20000):
+            strain = np.zeros((3, cells))
+            for i in range(2):
+                strain[i] = slopes[i, 0] * u[:-1] + slopes[i, 1] * u[1:]
+            elastic = strain - plastic
+            mean = elastic.sum(axis=0) / 3
+            deviator = 2 * shear * (elastic - mean)
+            mises = np.sqrt(1.5 * (deviator**2).sum(axis=0))
+            excess = np.maximum(mises - strength, 0)
+            flow = deviator * (1.5 * excess / (3 * shear) / np.maximum(mises, 1e-300))
+            stress = deviator - 2 * shear * flow + 3 * bulk * mean
+            force = np.zeros(cells + 1)
+            for node in range(2):
+                force[node : cells + node] += middle * size * (stress[:2] * slopes[:, node]).sum(axis=0)
+            force[0] -= pressure * inner
+            if np.abs(force).max() < 1e-12:
+                break
+            u -= 1.5 * inverse @ force
+        plastic += flow
+    print(f"ring, plane strain, p = 0.18: u(outer) = {u[-1]:.7e}, u(inner) = {u[0]:.7e} with {cells} cells")
+
+
+def stopping(density=2700.0, strength=1e8):
+    """Rings and shells that are thrown outwards and stopped by plastic flow, rigid before: all kinetic energy
+    becomes plastic work. Thin ring: r'' = −Y/(ρ r)."""
+    start, speed = 0.1, 150.0
+    specific = density * speed**2 / 2
+    strain = brentq(lambda strain: strength * strain + strength * strain**2 - specific, 0, 1, xtol=1e-15)
+    end = start * np.exp(strain)
+    print(f"thin ring, H = 2Y: stops at {end:.12f}, dissipates {strength * strain / specific:.9f} of its energy")
+    end = start * np.exp(density * speed**2 / (2 * strength))
+    # With r = end exp(−s²) and v² = (2Y/ρ) s².
+    rate = np.sqrt(2 * strength / density)
+    whole = np.sqrt(np.log(end / start))
+    time = quad(lambda s: 2 * end * np.exp(-(s**2)) / rate, 0, whole, epsabs=1e-16)[0]
+    print(f"thin ring: stops at {end:.9f} after {time:.9e}")
+    inner, outer = 0.1, 0.11
+    for kind, power, factor in (("sphere", 3, 2.0), ("cylinder", 2, 2 / np.sqrt(3))):
+        for speed in (100.0, 150.0, 200.0):
+            # v = speed (a/R)^(power − 1); the volume element is R^(power − 1) dR.
+            kinetic = quad(
+                lambda r: 0.5 * density * (speed * (inner / r) ** (power - 1)) ** 2 * r ** (power - 1), inner, outer
+            )[0]
+
+            def left(end):
+                def work(r):
+                    now = (r**power + end**power - inner**power) ** (1 / power)
+                    return strength * factor * np.log(now / r) * r ** (power - 1)
+
+                return kinetic - quad(work, inner, outer)[0]
+
+            print(f"{kind}, {speed:.0f}: inner radius {brentq(left, inner, 0.3, xtol=1e-14):.9f}")
+
+
+def plastic():
+    largest_force()
+    yielding_sphere()
+    yielding_ring()
+    stopping()
+
+
+TABLES = {"bar": bar, "oblique": oblique, "plastic": plastic, "ring": ring, "static": static}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in TABLES:

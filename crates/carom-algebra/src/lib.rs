@@ -32,7 +32,7 @@ pub use mixing::Mixing;
 pub use node_matrix::NodeMatrix;
 pub use pattern::Pattern;
 pub use precision::Precision;
-pub use principal::principal;
+pub use principal::{PrincipalAxes, principal, principal_axes};
 pub use projected::{
     ConjugateGradients, ConstraintPreconditioner, ConstraintRows, DiagonalBlocks, Ended, Goal,
 };

@@ -39,6 +39,7 @@ pub fn history_columns(case: &Case) -> Vec<Column> {
     let recorded = Recorded {
         dimension: case.dimension,
         bodies: case.bodies.iter().collect(),
+        yielding: case.yielding().map(|k| case.bodies[k].name.as_str()).collect(),
         contacts: case.contacts.iter().collect(),
         by_contact: case.contacts.len() > 1,
         ties: case.ties.iter().collect(),
@@ -54,6 +55,8 @@ pub fn history_columns(case: &Case) -> Vec<Column> {
 pub(super) struct Recorded<'a> {
     pub(super) dimension: usize,
     pub(super) bodies: Vec<&'a BodySpec>,
+    /// Names of the bodies that yield.
+    pub(super) yielding: Vec<&'a str>,
     pub(super) contacts: Vec<&'a ContactSpec>,
     /// Whether the force of each contact is recorded.
     pub(super) by_contact: bool,
@@ -146,6 +149,17 @@ impl Recorded<'_> {
             let what = "velocity of the centre of mass";
             columns.vector(&format!("{name}.velocity"), &label.velocity, what);
         }
+        if !self.yielding.is_empty() {
+            let what = "work of plastic flow on the bodies that is dissipated, cumulative: ≤ 0 but for the \
+                        error of mean forces";
+            columns.add("plastic_work", &label.energy, what);
+        }
+        for name in &self.yielding {
+            let what = "plastic_work of the body";
+            columns.add(&format!("{name}.plastic_work"), &label.energy, what);
+            let what = "largest equivalent plastic strain over its quadrature points";
+            columns.add(&format!("{name}.plastic_strain"), "", what);
+        }
         for contact in self.contacts.iter().filter(|_| self.by_contact) {
             let what = "contact force on its secondary side";
             columns.vector(&format!("{}.force", contact.name), &label.force, what);
@@ -192,7 +206,7 @@ const ENERGIES: [(&str, &str); 10] = [
     ("friction_work", "work of friction on the bodies, cumulative"),
     (
         "dissipation",
-        "external_work + contact_work + friction_work − (total − total at the start); negative if energy was created",
+        "external_work + contact_work + friction_work + plastic_work − (total − total at the start); negative if energy was created",
     ),
     (
         "energy_created",
@@ -214,7 +228,7 @@ const COUNTS: [(&str, &str); 5] = [
 
 /// Unit and meaning of a probe's column.
 fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
-    use Quantity::{Ax, Ay, Az, DetF, Ux, Uy, Uz, VonMises, Vx, Vy, Vz};
+    use Quantity::{Ax, Ay, Az, DetF, PlasticStrain, Ux, Uy, Uz, VonMises, Vx, Vy, Vz};
     let axis = &quantity.word()[1..];
     match quantity {
         Ux | Uy | Uz => (&label.length, format!("displacement along {axis}")),
@@ -222,6 +236,7 @@ fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
         Ax | Ay | Az => (&label.acceleration, format!("acceleration along {axis}")),
         VonMises => (&label.stress, "von Mises stress (from the Cauchy stress)".to_owned()),
         DetF => (&label.none, "volume ratio J".to_owned()),
+        PlasticStrain => (&label.none, "equivalent plastic strain".to_owned()),
         _ => (&label.stress, "Cauchy stress".to_owned()),
     }
 }

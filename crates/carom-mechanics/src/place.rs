@@ -53,7 +53,6 @@ impl Rejected {
             | Self::NoMultipliers { .. }
             | Self::Linear(_)
             | Self::NegativeMass
-            | Self::Remembers
             | Self::NoFrictionBalance
             | Self::NoValue(_)
             | Self::Unconstrained(_)

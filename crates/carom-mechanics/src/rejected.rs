@@ -35,9 +35,6 @@ pub enum Rejected {
         /// Share of the step that has passed.
         theta: f64,
     },
-    /// The state of fewer bodies is asked for, whose materials remember.
-    #[error("materials with memory cannot be taken out of a state")]
-    Remembers,
     /// A gap is not usable.
     #[error("contact \"{contact}\": {error}")]
     Contact {
@@ -268,7 +265,6 @@ impl Rejected {
             Self::Linear(_) => "linear-solver",
             Self::Overconstrained { .. } => "overconstrained-contact",
             Self::NegativeMass => "negative-mass",
-            Self::Remembers => "memory",
             Self::NoValue(_) => "no-value",
             Self::Unconstrained(_) => "unconstrained-body",
             Self::Jump { .. } => "jump",

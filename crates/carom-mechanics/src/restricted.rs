@@ -1,10 +1,11 @@
 //! The part of a state that belongs to some of the bodies and contacts of a model.
 
+use std::sync::Arc;
+
 use carom_solid::Configuration;
 
 use crate::ledger::book_kinetic;
-use crate::materials::Materials;
-use crate::model::Model;
+use crate::model::{Model, past_of};
 use crate::rejected::Rejected;
 use crate::stage::renewal::FrozenTangent;
 use crate::start::press;
@@ -12,17 +13,26 @@ use crate::state::{Ledger, OverDofs, State};
 use crate::velocity::active_rows::measure_all;
 
 impl State {
-    /// The state of a model with fewer bodies and contacts: `dofs` and `contacts` are their numbers
-    /// in the larger model. Its ledger starts anew. What remains of active pairs, velocities and
-    /// the memory of the scheme is unchanged.
+    /// The state of a model with fewer bodies and contacts than `whole`: `dofs` and `contacts` are
+    /// their numbers in that. Its ledger starts anew. What remains of active pairs, velocities, the
+    /// memory of the scheme and that of materials is unchanged.
     ///
     /// # Errors
     /// If a cell is inverted.
-    pub fn restricted(&self, model: &Model, dofs: &[usize], contacts: &[usize]) -> Result<Self, Rejected> {
-        if model.remembers() {
-            return Err(Rejected::Remembers);
-        }
+    pub fn restricted(
+        &self,
+        whole: &Model,
+        model: &Model,
+        dofs: &[usize],
+        contacts: &[usize],
+    ) -> Result<Self, Rejected> {
         let mut state = self.clone();
+        state.materials = model.materials();
+        let memory = model.parts.iter().flat_map(|part| {
+            let k = whole.parts.iter().position(|other| other.name == part.name).unwrap_or(0);
+            past_of(&whole.parts, k, self.materials.past(0.0).memory).memory
+        });
+        state.materials.memory = Arc::new(memory.copied().collect());
         for OverDofs { values, .. } in
             state.over_dofs().into_iter().filter(|vector| !vector.values.is_empty())
         {
@@ -35,9 +45,12 @@ impl State {
         state.frozen = FrozenTangent::default();
         state.overlaps.clear();
         let mut internal = vec![0.0; model.dofs()];
+        let past = state.materials.past(0.0);
+        let mut reached = state.materials.clone();
         let strain = model
-            .internal_force(&Configuration::at(&state.y), &mut internal, &mut Materials::default())
+            .internal_force(&Configuration { before: None, y: &state.y, past }, &mut internal, &mut reached)
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+        state.materials.stored = reached.stored;
         let springs = springs(model, &state)?;
         state.ledger = Ledger {
             strain: strain + springs,

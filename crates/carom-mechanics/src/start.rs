@@ -10,6 +10,8 @@
 //! acceleration of all other forces, M a₀ = f_ext − f_int. Without inertia v₀ and a₀ are zero, and
 //! the first load step finds the equilibrium.
 
+use std::sync::Arc;
+
 use std::collections::BTreeMap;
 
 use carom_contact::{Pair, Point, Rows};
@@ -32,6 +34,8 @@ pub struct InitialState {
     pub v: Vec<f64>,
     /// Pairs of each contact.
     pub pairs: Vec<Vec<Pair>>,
+    /// What the materials of all bodies remember; empty if nothing.
+    pub memory: Vec<f64>,
 }
 
 /// What accelerates the bodies.
@@ -62,10 +66,11 @@ pub(crate) fn start(
     let dofs = model.dofs();
     let has_inertia = inertia != Inertia::None;
     let contacts = model.contacts.len();
-    let InitialState { y, v, mut pairs } = before.unwrap_or_else(|| InitialState {
+    let InitialState { y, v, mut pairs, memory } = before.unwrap_or_else(|| InitialState {
         y: model.initial_position.clone(),
         v: model.initial_velocity.clone(),
         pairs: vec![Vec::new(); contacts],
+        memory: Vec::new(),
     });
     pairs.iter_mut().flatten().for_each(|pair| pair.rests = pair.active);
     let mut state = State {
@@ -81,9 +86,12 @@ pub(crate) fn start(
         materials: model.materials(),
         ..State::default()
     };
-    // A body that starts strained has reached its positions at once.
-    let none = model.materials();
-    let at = Configuration { before: None, y: &state.y, past: none.past(0.0) };
+    // A body that starts strained, and remembers nothing, has reached its positions at once.
+    let mut start = model.materials();
+    if memory.len() == model.memory() {
+        start.memory = Arc::new(memory);
+    }
+    let at = Configuration { before: None, y: &state.y, past: start.past(0.0) };
     state.ledger.strain = model
         .internal_force(&at, &mut state.f_internal, &mut state.materials)
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;

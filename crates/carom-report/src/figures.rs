@@ -166,7 +166,7 @@ fn rotation(histories: &Histories, scene: &Scene) -> Option<Figure> {
 fn energy(run: &Recorded, histories: &Histories) -> Option<Figure> {
     const SHARE: f64 = 1e-6;
     let energies = ["total", "kinetic", "strain", "potential"].map(|name| Line::new(name, name));
-    let works = ["dissipation", "external_work", "contact_work", "friction_work"]
+    let works = ["dissipation", "external_work", "contact_work", "friction_work", "plastic_work"]
         .map(|name| Line::new(name, name.replace('_', " ")));
     let peak = |lines: &[Line]| {
         lines
@@ -211,6 +211,7 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
                 "external_work",
                 "contact_work",
                 "friction_work",
+                "plastic_work",
             ]
             .contains(&column);
         shown

@@ -40,12 +40,16 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let impact =
         || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
-    let inside = || [facts.peak_force(), facts.work(), facts.friction(), facts.largest_stress()];
+    let inside =
+        || [facts.peak_force(), facts.work(), facts.friction(), facts.plastic(), facts.largest_stress()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
     } else if run.has_contact() && !run.is_driven() {
-        impact().into_iter().chain([facts.largest_stress(), facts.friction(), facts.displacement()]).collect()
+        impact()
+            .into_iter()
+            .chain([facts.largest_stress(), facts.friction(), facts.plastic(), facts.displacement()])
+            .collect()
     } else if run.is_driven() {
         facts.reactions().into_iter().chain(inside()).chain([facts.displacement()]).collect()
     } else {
@@ -186,6 +190,11 @@ impl Facts<'_> {
     fn friction(&self) -> Option<Number> {
         let work = *self.run.column("friction_work")?.last()?;
         (work != 0.0).then(|| Number::new("Work of friction", self.energy(work), "at the end"))
+    }
+
+    fn plastic(&self) -> Option<Number> {
+        let work = *self.run.column("plastic_work")?.last()?;
+        (work != 0.0).then(|| Number::new("Work of plastic flow", self.energy(work), "at the end"))
     }
 
     fn kinetic(&self) -> Option<Number> {

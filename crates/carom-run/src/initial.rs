@@ -5,7 +5,7 @@
 //! would not detect a changed mesh.
 
 use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
-use carom_mechanics::model::{Manufactured, Model, Tie};
+use carom_mechanics::model::{Manufactured, Model, Tie, past_of};
 use carom_mechanics::{Grid, InitialState, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 use carom_solid::Mesh;
@@ -33,7 +33,7 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<InitialState
         y.extend(position);
         v.extend(velocity);
     }
-    Ok(InitialState { y, v, pairs: vec![Vec::new(); model.contacts.len()] })
+    Ok(InitialState { y, v, pairs: vec![Vec::new(); model.contacts.len()], memory: Vec::new() })
 }
 
 /// Reads the end of the run from which a case starts.
@@ -76,8 +76,12 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         ));
     }
 
-    let mut before =
-        InitialState { y: model.reference.clone(), v: vec![0.0; model.dofs()], pairs: Vec::new() };
+    let mut before = InitialState {
+        y: model.reference.clone(),
+        v: vec![0.0; model.dofs()],
+        pairs: Vec::new(),
+        memory: remembered(&old, &state, model)?,
+    };
     let mut meshes = Vec::new();
     let mut first = 0;
     let made = build::tied_meshes(&old).map_err(|problems| {
@@ -146,6 +150,35 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
     }
     Ok(before)
+}
+
+/// What the materials of a model remember of a run: that of each body's own materials there.
+///
+/// # Errors
+/// The material of a body remembers other things there.
+fn remembered(old: &Case, state: &State, model: &Model) -> Result<Vec<f64>, Vec<Problem>> {
+    let memory = state.materials.past(0.0).memory;
+    if !model.parts.iter().any(|part| part.memory() > 0) || memory.is_empty() {
+        return Ok(Vec::new());
+    }
+    let whole = build::build(old, &build::Materials::default())?;
+    let mut own = Vec::new();
+    for part in &model.parts {
+        let there = whole.parts.iter().position(|other| other.name == part.name);
+        let past = there.map_or(&[][..], |k| past_of(&whole.parts, k, memory).memory);
+        // A body of an elastic material has no past.
+        if past.is_empty() || past.len() == part.memory() {
+            own.extend_from_slice(past);
+            own.resize(own.len() + part.memory() - past.len(), 0.0);
+            continue;
+        }
+        let what =
+            format!("the material of body \"{}\" remembers something else in the other run", part.name);
+        let why = format!("there its points remember {} numbers, here {}", past.len(), part.memory());
+        let help = "give the body a material of the same law, in the same plane state";
+        return Err(vec![Problem::new("initial.from", what, why, help)]);
+    }
+    Ok(own)
 }
 
 /// Difference of positions, over L, and of velocities, over the largest, that is round-off.

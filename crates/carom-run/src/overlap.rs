@@ -197,7 +197,12 @@ pub(crate) fn relaxed(
         return Err(fails("no body has a mass".to_owned()));
     }
     let rest = vec![0.0; start.dofs()];
-    let mut before = InitialState { y: start.initial_position.clone(), v: rest, pairs: closed(&start) };
+    let mut before = InitialState {
+        y: start.initial_position.clone(),
+        v: rest,
+        pairs: closed(&start),
+        memory: Vec::new(),
+    };
     let mut proximal = Proximal {
         step: LONG * start.scale / slowest,
         tolerance: case.newton.tolerance,
@@ -229,7 +234,12 @@ pub(crate) fn relaxed(
     let mut y = model.initial_position.clone();
     let from = &before.y;
     y[..from.len()].copy_from_slice(from);
-    Ok(Some(InitialState { y, v: model.initial_velocity.clone(), pairs: before.pairs }))
+    Ok(Some(InitialState {
+        y,
+        v: model.initial_velocity.clone(),
+        pairs: before.pairs,
+        memory: before.memory,
+    }))
 }
 
 /// Why an overlap is not known: it is much smaller than the deviation of straight cells from the
@@ -338,7 +348,8 @@ impl Proximal {
             let strain = state.ledger.strain;
             let changes = (strain - old).abs() > SETTLED * strain.abs() + self.floor;
             if !changes || simulation.finished() {
-                let end = InitialState { y: state.y, v: rest, pairs: state.pairs };
+                let memory = state.materials.past(0.0).memory.to_vec();
+                let end = InitialState { y: state.y, v: rest, pairs: state.pairs, memory };
                 return Ok(Reached { end, changes: changes.then_some([old, strain]) });
             }
             (state.v, state.a) = (rest.clone(), rest.clone());

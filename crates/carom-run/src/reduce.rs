@@ -260,7 +260,7 @@ fn without(candidate: &Candidate, what: &Removable) -> Option<Candidate> {
     }
     let contacts: Vec<usize> =
         small.contacts.iter().filter_map(|c| large.contacts.iter().position(|k| k.name == c.name)).collect();
-    let state = state.restricted(&small, &dofs, &contacts).ok()?;
+    let state = state.restricted(&large, &small, &dofs, &contacts).ok()?;
     Some(Candidate { case, state })
 }
 

@@ -23,6 +23,8 @@ pub struct PointState {
     pub cauchy: [[f64; 3]; 3],
     /// Green–Lagrange strain E = (FᵀF − I)/2, 3 × 3 including the out-of-plane component.
     pub strain: [[f64; 3]; 3],
+    /// Equivalent plastic strain.
+    pub plastic_strain: f64,
 }
 
 /// Positions at which a body responds, and what its materials remember.
@@ -143,8 +145,12 @@ pub trait Body: Geometry {
     /// The determinant J if it is not positive.
     fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
 
-    /// Smallest J over the quadrature points of a cell.
-    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64;
+    /// Smallest J over the quadrature points of a cell, which remember `past`.
+    fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64;
+
+    /// Largest equivalent plastic strain over the quadrature points of a cell, which remember
+    /// `past`.
+    fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64;
 
     /// Certifies that J > 0 everywhere in consecutive cells from `first` on, not only at quadrature
     /// points. Overwrites `margins` with the distance of each by which every component of its

@@ -19,6 +19,17 @@
 //! ```text
 //! W₁ − W₀ − S(E_m):ΔE = 5/18 [S(E₊) + S(E₋) − 2 S(E_m)]:ΔE,   E± = E_m ± √(3/5) ΔE/2
 //! ```
+//!
+//! Where flow begins within a step, the incremental potential W = W* − ψ of a law that yields has
+//! no second derivative. The smooth part W*, without flow in the step, is integrated so; what flow
+//! releases, ψ, is known in closed form:
+//!
+//! ```text
+//! W₁ − W₀ − S(E_m):ΔE = 5/18 [S*(E₊) + S*(E₋) − 2 S*(E_m)]:ΔE − (ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE
+//! ```
+//!
+//! In plane stress, where the thickness without flow is another one, the work of a step with flow
+//! is the difference of the energies.
 
 use carom_algebra::Mat;
 
@@ -85,6 +96,8 @@ struct AtStrain<const D: usize, P> {
     inverse: Mat<D>,
     /// S.
     stress: Mat<D>,
+    /// The smooth part of a law that yields.
+    unevolved: Option<(P, Mat<D>)>,
 }
 
 impl<const D: usize, P> AtStrain<D, P> {
@@ -94,7 +107,25 @@ impl<const D: usize, P> AtStrain<D, P> {
         let point = law.at(&excess)?;
         let inverse = (Mat::identity() + excess).inverse();
         let stress = symmetric(&(inverse * law.stress(&point)));
-        Ok(Self { point, inverse, stress })
+        let unevolved = law.unevolved(&point).map(|unevolved| {
+            let stress = symmetric(&(inverse * law.stress(&unevolved)));
+            (unevolved, stress)
+        });
+        Ok(Self { point, inverse, stress, unevolved })
+    }
+
+    /// The smooth part S* of S.
+    #[inline(always)]
+    fn smooth(&self) -> &Mat<D> {
+        self.unevolved.as_ref().map_or(&self.stress, |(_, stress)| stress)
+    }
+
+    /// ∂S*/∂E : dE.
+    #[inline(always)]
+    fn smooth_change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Mat<D> {
+        let Some((point, stress)) = &self.unevolved else { return self.change(law, de) };
+        let df = self.inverse.transposed() * *de;
+        self.inverse * (law.change(point, &df) - df * *stress)
     }
 
     /// ∂S/∂E : dE.
@@ -149,12 +180,50 @@ impl<const D: usize, P> Path<D, P> {
         Ok([AtStrain::new(law, &(middle + offset))?, AtStrain::new(law, &(middle - offset))?])
     }
 
-    /// S(E₊) + S(E₋) − 2 S(E_m), times the weight.
+    /// S*(E₊) + S*(E₋) − 2 S*(E_m), times the weight.
     #[inline(always)]
     fn curvature(&self, outer: &[AtStrain<D, P>; 2]) -> Mat<D> {
-        let above = outer[0].stress - self.middle.stress;
-        let below = outer[1].stress - self.middle.stress;
+        let above = *outer[0].smooth() - *self.middle.smooth();
+        let below = *outer[1].smooth() - *self.middle.smooth();
         (above + below) * WEIGHT
+    }
+
+    /// Whether the work is the difference of the energies: in long steps, and where flow begins of
+    /// which ψ is not known.
+    #[inline(always)]
+    fn by_difference<L: Material<D, Point = P>>(&self, law: &L) -> Result<bool, NotPositive> {
+        if self.square > GAUSS || !L::YIELDS || self.middle.unevolved.is_some() {
+            return Ok(self.square > GAUSS);
+        }
+        let flows = |point: &P| law.released(point) > 0.0;
+        Ok(flows(&self.middle.point) || flows(&law.at(&root(&self.ends[1])?)?))
+    }
+
+    /// −(ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE.
+    #[inline(always)]
+    fn released<L: Material<D, Point = P>>(&self, law: &L) -> Result<f64, NotPositive> {
+        if self.middle.unevolved.is_none() {
+            return Ok(0.0);
+        }
+        let mut released = [0.0; 2];
+        for (released, strain) in released.iter_mut().zip(&self.ends) {
+            *released = law.released(&law.at(&root(strain)?)?);
+        }
+        let flown = self.middle.stress - *self.middle.smooth();
+        Ok(released[0] - released[1] - flown.double_dot(&self.change))
+    }
+
+    /// The derivative of [`Self::released`] along dE.
+    #[inline(always)]
+    fn released_change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Result<f64, NotPositive> {
+        if self.middle.unevolved.is_none() {
+            return Ok(0.0);
+        }
+        let end = AtStrain::new(law, &self.ends[1])?;
+        let half = *de * 0.5;
+        let flown = (end.stress - *end.smooth()) - (self.middle.stress - *self.middle.smooth());
+        let change = self.middle.change(law, &half) - self.middle.smooth_change(law, &half);
+        Ok(flown.double_dot(de) - change.double_dot(&self.change))
     }
 
     /// φ, with W₁.
@@ -163,10 +232,10 @@ impl<const D: usize, P> Path<D, P> {
         if !self.corrected {
             return Ok(0.0);
         }
-        let excess_work = if self.square > GAUSS {
+        let excess_work = if self.by_difference(law)? {
             end - energy_at(law, &self.ends[0])? - self.middle.stress.double_dot(&self.change)
         } else {
-            self.curvature(&self.outer(law)?).double_dot(&self.change)
+            self.curvature(&self.outer(law)?).double_dot(&self.change) + self.released(law)?
         };
         Ok(excess_work / self.square)
     }
@@ -181,20 +250,22 @@ impl<const D: usize, P> Path<D, P> {
         if !self.corrected {
             return Ok([0.0, 0.0]);
         }
-        let middle_change = self.middle.change(law, &(*de * 0.5));
-        let [phi, excess_change] = if self.square > GAUSS {
+        let [phi, excess_change] = if self.by_difference(law)? {
             let end = AtStrain::new(law, &self.ends[1])?;
             let phi = self.phi(law, law.energy(&end.point))?;
             let by_stress = (end.stress - self.middle.stress).double_dot(de);
+            let middle_change = self.middle.change(law, &(*de * 0.5));
             [phi, by_stress - middle_change.double_dot(&self.change)]
         } else {
             let outer = self.outer(law)?;
             let curvature = self.curvature(&outer);
-            let above = outer[0].change(law, &(*de * (0.5 + OUTER))) - middle_change;
-            let below = outer[1].change(law, &(*de * (0.5 - OUTER))) - middle_change;
+            let middle = self.middle.smooth_change(law, &(*de * 0.5));
+            let above = outer[0].smooth_change(law, &(*de * (0.5 + OUTER))) - middle;
+            let below = outer[1].smooth_change(law, &(*de * (0.5 - OUTER))) - middle;
             let curvature_change = (above + below) * WEIGHT;
-            let phi = curvature.double_dot(&self.change) / self.square;
-            [phi, curvature_change.double_dot(&self.change) + curvature.double_dot(de)]
+            let phi = (curvature.double_dot(&self.change) + self.released(law)?) / self.square;
+            let smooth = curvature_change.double_dot(&self.change) + curvature.double_dot(de);
+            [phi, smooth + self.released_change(law, de)?]
         };
         Ok([phi, (excess_change - 2.0 * phi * self.change.double_dot(de)) / self.square])
     }

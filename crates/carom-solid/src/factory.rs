@@ -3,7 +3,8 @@
 use crate::body::Body;
 use crate::element_shape::of_shape;
 use crate::material::{
-    Law, LinearElastic, Material, NeoHookean, PlaneStress, Pointwise, SaintVenantKirchhoff, Thickness,
+    Hencky, J2, Law, LinearElastic, Material, Mean, NeoHookean, PlaneStress, Pointwise, SaintVenantKirchhoff,
+    Thickness,
 };
 use crate::mesh::{Element, Mesh};
 use crate::shape::{Hex8, Quad4, Shape};
@@ -27,6 +28,55 @@ pub trait Constitutive: Send + Sync {
 
 /// A law compiled for the quadrature points of bodies of one dimension.
 pub struct LawAtPoints<const D: usize>(Box<dyn Pointwise<D>>);
+
+/// A law of which bodies with mean dilatation can be made.
+pub trait VolumeAveraged {
+    /// Its parts in plane strain.
+    fn averaged_in_plane(&self) -> AveragedAtPoints<2>;
+
+    /// Its parts in space.
+    fn averaged_in_space(&self) -> AveragedAtPoints<3>;
+}
+
+/// A law without, and with, its resistance to changes of volume.
+pub struct AveragedAtPoints<const D: usize> {
+    rest: Box<dyn Pointwise<D>>,
+    mean: Mean<D>,
+}
+
+impl VolumeAveraged for Law {
+    fn averaged_in_plane(&self) -> AveragedAtPoints<2> {
+        let (rest, mean) = self.averaged();
+        AveragedAtPoints { rest: rest.pointwise(), mean }
+    }
+
+    fn averaged_in_space(&self) -> AveragedAtPoints<3> {
+        let (rest, mean) = self.averaged();
+        AveragedAtPoints { rest: rest.pointwise(), mean }
+    }
+}
+
+impl VolumeAveraged for J2 {
+    fn averaged_in_plane(&self) -> AveragedAtPoints<2> {
+        let (rest, mean) = self.averaged();
+        AveragedAtPoints { rest: Box::new(rest), mean }
+    }
+
+    fn averaged_in_space(&self) -> AveragedAtPoints<3> {
+        let (rest, mean) = self.averaged();
+        AveragedAtPoints { rest: Box::new(rest), mean }
+    }
+}
+
+impl<L: VolumeAveraged + ?Sized> VolumeAveraged for &L {
+    fn averaged_in_plane(&self) -> AveragedAtPoints<2> {
+        (**self).averaged_in_plane()
+    }
+
+    fn averaged_in_space(&self) -> AveragedAtPoints<3> {
+        (**self).averaged_in_space()
+    }
+}
 
 /// Material of the cells of a region of a body.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +129,7 @@ impl Law {
             Self::NeoHookean { lambda, mu } => Box::new(NeoHookean { lambda, mu }),
             Self::SaintVenantKirchhoff { lambda, mu } => Box::new(SaintVenantKirchhoff { lambda, mu }),
             Self::LinearElastic { lambda, mu } => Box::new(LinearElastic { lambda, mu }),
+            Self::Hencky { lambda, mu } => Box::new(Hencky { lambda, mu }),
         }
     }
 }
@@ -120,9 +171,6 @@ pub fn body_of_regions(
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
     let element = mesh.element;
-    if plane == PlaneState::Stress && materials.iter().any(|of| of.law.in_plane_stress().0.memory() > 0) {
-        return Err(SolidError::MemoryInPlaneStress);
-    }
     match (element.dimension(), plane) {
         (1, PlaneState::Strain) => {
             let media = media(materials, |law| law.along_line());
@@ -152,14 +200,20 @@ pub fn body_of_regions(
 /// # Errors
 /// As [`body_of_regions`]; for another element, of which F is constant in a cell or the pressure
 /// would be too coarse.
-pub fn mean_dilatation_body(
+pub fn mean_dilatation_body<L: VolumeAveraged>(
     mesh: Mesh,
-    materials: &[RegionMaterial<Law>],
+    materials: &[RegionMaterial<L>],
     thickness: f64,
 ) -> Result<Box<dyn Body>, SolidError> {
     match mesh.element {
-        Element::Q4 => solid::<2, 4, Quad4>(mesh, averaged(materials), thickness),
-        Element::Hex8 => solid::<3, 8, Hex8>(mesh, averaged(materials), 1.0),
+        Element::Q4 => {
+            let media = averaged(materials, VolumeAveraged::averaged_in_plane);
+            solid::<2, 4, Quad4>(mesh, media, thickness)
+        }
+        Element::Hex8 => {
+            let media = averaged(materials, VolumeAveraged::averaged_in_space);
+            solid::<3, 8, Hex8>(mesh, media, 1.0)
+        }
         element => Err(SolidError::NoMeanDilatation { element }),
     }
 }
@@ -176,8 +230,15 @@ fn media<const D: usize>(
     materials.iter().map(medium).collect()
 }
 
-fn averaged<const D: usize>(materials: &[RegionMaterial<Law>]) -> Vec<Medium<D>> {
-    materials.iter().map(|of| Medium::averaged(of.law, of.density)).collect()
+fn averaged<const D: usize, L>(
+    materials: &[RegionMaterial<L>],
+    at_points: impl Fn(&L) -> AveragedAtPoints<D>,
+) -> Vec<Medium<D>> {
+    let medium = |of: &RegionMaterial<L>| {
+        let AveragedAtPoints { rest, mean } = at_points(&of.law);
+        Medium { law: rest, mean: Some(mean), density: of.density }
+    };
+    materials.iter().map(medium).collect()
 }
 
 fn solid<const D: usize, const N: usize, S: Shape<D, N>>(

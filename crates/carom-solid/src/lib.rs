@@ -39,8 +39,8 @@ pub use earliest::{Earliest, Piece};
 pub use facet::{FacetFunctions, FacetShape};
 pub use facet_point::FacetPoint;
 pub use factory::{
-    Constitutive, LawAtPoints, PlaneState, RegionMaterial, body, body_of_regions, mean_dilatation_body,
-    plane_stress_body,
+    AveragedAtPoints, Constitutive, LawAtPoints, PlaneState, RegionMaterial, VolumeAveraged, body,
+    body_of_regions, mean_dilatation_body, plane_stress_body,
 };
 pub use loaded_side::LoadedSide;
 pub use lumping::cell_lumped_mass;

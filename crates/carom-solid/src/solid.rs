@@ -51,8 +51,6 @@ pub enum SolidError {
     NoMeanDilatation { element: Element },
     #[error("cell {cell} is of region {region}, but the body has {media} materials")]
     NoMedium { cell: usize, region: usize, media: usize },
-    #[error("a law with memory is not available in plane stress")]
-    MemoryInPlaneStress,
     #[error("density {0} is not a finite number ≥ 0")]
     Density(f64),
     #[error("thickness {0} is not a finite number > 0")]

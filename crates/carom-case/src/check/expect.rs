@@ -8,10 +8,17 @@ use carom_record::units::Labels;
 
 use super::super::columns::Recorded;
 use super::super::document::joined;
-use super::super::{Fallback, suggest};
+use super::super::{Fallback, MaterialSpec, suggest};
 use super::Check;
 
-impl Check<'_> {
+impl<'a> Check<'a> {
+    /// Names of the bodies that yield.
+    fn yielding(&self) -> Vec<&'a str> {
+        let materials: Vec<&MaterialSpec> = self.draft.material.iter().flatten().collect();
+        let bodies = self.draft.body.iter().flatten();
+        bodies.filter(|body| body.yields(&materials)).map(|body| body.name.as_str()).collect()
+    }
+
     pub(super) fn expects(&mut self) {
         let draft = self.draft;
         // Columns are named after bodies, contacts and probes. If one of these could not be read,
@@ -20,12 +27,14 @@ impl Check<'_> {
         let between = |path: &str| path.starts_with("contact[") && path.contains("].between");
         let complete = !self.problems.iter().any(|p| p.at_key || between(&p.path))
             && draft.probe.iter().all(Option::is_some)
+            && draft.material.iter().all(Option::is_some)
             && draft.body.iter().all(Option::is_some)
             && draft.contact.iter().all(Option::is_some)
             && draft.support.iter().all(Option::is_some);
         let recorded = Recorded {
             dimension: draft.dimension.unwrap_or(2),
             bodies: draft.body.iter().flatten().collect(),
+            yielding: self.yielding(),
             contacts: draft.contact.iter().flatten().collect(),
             by_contact: draft.contact.len() > 1,
             ties: draft.tie.iter().flatten().collect(),

@@ -297,6 +297,11 @@ impl<'a> Check<'a> {
                 let what = format!("the element {element:?} has dimension {}", element.dimension());
                 self.add(format!("body[{i}].element"), what, format!("the case has dimension = {d}"), help);
             }
+            if let Some(element) = element
+                && text("volumetric") != Some("mean")
+            {
+                self.plastic_flow(i, element);
+            }
             if text("volumetric") == Some("mean")
                 && let Some(element) = element
             {
@@ -323,6 +328,28 @@ impl<'a> Check<'a> {
                 self.add(format!("body[{i}].element"), what, why, help);
             }
         }
+    }
+
+    /// Reports elements of degree 1 that would lock in plastic flow.
+    fn plastic_flow(&mut self, i: usize, element: Element) {
+        let is_sheet = self.document.root().get("plane").and_then(Node::text) == Some("stress");
+        let other = match element {
+            Element::T3 | Element::Q4 if is_sheet => return,
+            Element::T3 | Element::Tet4 => String::new(),
+            Element::Q4 | Element::Hex8 => ", or volumetric = \"mean\"".to_owned(),
+            _ => return,
+        };
+        let Some(spec) = self.draft.body.iter().flatten().nth(i) else { return };
+        let names = spec.material_names();
+        let flows =
+            |material: &&MaterialSpec| material.plastic.is_some() && names.contains(&material.name.as_str());
+        let Some(material) = self.draft.material.iter().flatten().find(flows) else { return };
+        let what = format!("the element {element:?} locks where the material `{}` flows", material.name);
+        let why = "plastic flow keeps the volume, and a cell of degree 1 that keeps it at every point can \
+                   hardly deform: forces would be far too large";
+        let help =
+            element.with_degree(2).map_or_else(String::new, |other| format!("use element = \"{other:?}\""));
+        self.add(format!("body[{i}].element"), what, why, format!("{help}{other}"));
     }
 
     fn mean_dilatation(&mut self, element: Element, path: String) {

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::formula::FormulaSpec;
 use super::mesh::{self, MeshSpec};
-use crate::keys::Kind::{self, Formulas, FormulasOr, Name, NamesByGroup, Number, Variant, Vector};
+use crate::keys::Kind::{self, Formulas, FormulasOr, Name, NamesByGroup, Number, Points, Variant, Vector};
 use crate::keys::{IN_SPACE, IN_TIME, Keys, NOT_NEGATIVE, POSITIVE, Range, View};
 use crate::place::{self, PlaceKeys, PlaceSpec};
 
-/// A hyperelastic material.
+/// A material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MaterialSpec {
     /// Name by which bodies refer to it.
@@ -24,11 +24,33 @@ pub struct MaterialSpec {
     pub lambda: f64,
     /// Second Lamé constant μ.
     pub mu: f64,
+    /// Plastic flow; none of an elastic material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plastic: Option<PlasticSpec>,
 }
 
-/// A hyperelastic material, given by lambda and mu or by young and poisson.
+/// Yield stress over the equivalent plastic strain α.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PlasticSpec {
+    /// yield + hardening α + rise (1 − exp(−rate α)); linear without a rise.
+    Formula {
+        /// Yield stress at α = 0.
+        yield_stress: f64,
+        /// Hardening modulus.
+        hardening: f64,
+        /// Rise of the yield stress that saturates.
+        rise: f64,
+        /// Rate of its saturation.
+        rate: f64,
+    },
+    /// Points [α, yield stress], straight between them and constant beyond the last.
+    Table(Vec<[f64; 2]>),
+}
+
+/// A material, given by lambda and mu or by young and poisson.
 #[derive(Keys)]
-#[keys(name = "[[material]]", later = ["plastic", "viscosity", "damping"])]
+#[keys(name = "[[material]]", later = ["viscosity", "damping"])]
 pub(crate) struct MaterialKeys {
     /// Name by which bodies refer to it.
     #[key(Name, example = "\"rubber\"")]
@@ -52,6 +74,117 @@ pub(crate) struct MaterialKeys {
     /// its bulk modulus infinite.
     #[key(Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }), example = "0.49")]
     poisson: Option<f64>,
+    /// Plastic flow by von Mises's yield condition with isotropic hardening; with the law `hencky`.
+    /// Default: none.
+    #[key(example = "{ yield = 355.0, hardening = 1000.0 }")]
+    plastic: Option<PlasticKeys>,
+}
+
+/// Yield stress over the equivalent plastic strain α: yield + hardening α, with a rise by Voce; or
+/// a table.
+#[derive(Keys)]
+#[keys(name = "plastic")]
+struct PlasticKeys {
+    /// Yield stress at α = 0.
+    #[key(name = "yield", Number(POSITIVE), unit = "mass/(length·time²)", example = "355.0")]
+    yield_stress: Option<f64>,
+    /// Hardening modulus dσ_y/dα; 0.0 is perfect plasticity. Default: 0.
+    #[key(unit = "mass/(length·time²)", example = "1000.0")]
+    hardening: Option<f64>,
+    /// Rise of the yield stress that saturates (E. Voce), added to the above.
+    #[key(example = "{ rise = 265.0, rate = 16.93 }")]
+    voce: Option<VoceKeys>,
+    /// Points [α, yield stress] in place of the other keys, from α = 0 on: straight between them,
+    /// constant beyond the last. Of a measured curve of true stress over true strain, α is the
+    /// strain less the stress over Young's modulus.
+    #[key(Points(1), optional = "[[0.0, 355.0], [0.1, 420.0]]")]
+    table: Vec<[f64; 2]>,
+}
+
+/// Rise of the yield stress that saturates: rise (1 − exp(−rate α)).
+#[derive(Keys)]
+#[keys(name = "voce")]
+struct VoceKeys {
+    /// Rise of the yield stress at large plastic strain.
+    #[key(Number(NOT_NEGATIVE), unit = "mass/(length·time²)", example = "265.0")]
+    rise: f64,
+    /// Rate of saturation: at α = 1/rate, 63 % of the rise.
+    #[key(Number(POSITIVE), example = "16.93")]
+    rate: f64,
+}
+
+impl PlasticKeys {
+    fn resolved(self, v: &View) -> Option<PlasticSpec> {
+        let Self { yield_stress, hardening, voce, table } = self;
+        if v.has("table") {
+            return match ["yield", "hardening", "voce"].into_iter().find(|key| v.has(key)) {
+                Some(key) => v.wrong_key(
+                    key,
+                    format!("`table` and `{key}` are given"),
+                    "a table contains the whole yield stress",
+                    format!("leave out `{key}`, or `table`"),
+                ),
+                None => checked_table(v, table),
+            };
+        }
+        if !v.has("yield") {
+            return v.wrong(
+                "",
+                "`plastic` has no yield stress",
+                "a material flows where its von Mises stress reaches that",
+                "add `yield`, or a `table` of yield stresses",
+            );
+        }
+        let yield_stress = yield_stress?;
+        let hardening = if v.has("hardening") { hardening? } else { 0.0 };
+        let VoceKeys { rise, rate } = if v.has("voce") { voce? } else { VoceKeys::NONE };
+        if hardening < 0.0 && yield_stress > 0.0 {
+            let gone = (yield_stress + rise) / -hardening;
+            let what = format!("with hardening = {hardening} the yield stress softens to zero");
+            let why = format!(
+                "it is gone at a plastic strain of about {gone:.3}; before that, strain gathers in one row of \
+                 cells, so that results depend on the mesh"
+            );
+            return v.wrong("hardening", what, why, "hardening ≥ 0.0; 0.0 is perfect plasticity");
+        }
+        Some(PlasticSpec::Formula { yield_stress, hardening, rise, rate })
+    }
+}
+
+impl VoceKeys {
+    /// No rise.
+    const NONE: Self = Self { rise: 0.0, rate: 1.0 };
+}
+
+/// A table of yield stresses, from α = 0 on, that does not fall.
+fn checked_table(v: &View, table: Vec<[f64; 2]>) -> Option<PlasticSpec> {
+    let [alpha, stress] = *table.first()?;
+    if alpha != 0.0 {
+        let what = format!("the table of yield stresses begins at a plastic strain of {alpha}");
+        let why = "below its first point the yield stress would be unknown";
+        return v.wrong("table[0]", what, why, "begin with the yield stress at 0.0");
+    }
+    if stress <= 0.0 {
+        let why = "without strength the material would be a liquid";
+        return v.wrong("table[0]", "the first yield stress is not positive", why, "give a yield stress > 0");
+    }
+    for (k, pair) in table.windows(2).enumerate() {
+        let place = format!("table[{}]", k + 1);
+        let [[before, strong], [alpha, stress]] = [pair[0], pair[1]];
+        if alpha <= before {
+            let what = format!("the plastic strain {alpha} of the table follows {before}");
+            let why = "plastic strains of a table increase from point to point";
+            return v.wrong(&place, what, why, "order the points by plastic strain, each once");
+        }
+        if stress < strong {
+            let what =
+                format!("the yield stress falls from {strong} to {stress} at a plastic strain of {alpha}");
+            let why = "where a material softens, strain gathers in one row of cells, so that results depend on \
+                       the mesh";
+            return v.wrong(&place, what, why, "let the yield stress stay constant there");
+        }
+    }
+    Some(PlasticSpec::Table(table))
 }
 
 /// The materials of a case.
@@ -62,7 +195,13 @@ pub(crate) fn materials(v: &View) -> Option<Vec<Option<MaterialSpec>>> {
 impl MaterialKeys {
     fn resolved(self, v: &View) -> Option<MaterialSpec> {
         let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
-        let Self { name, law, density, lambda, mu, young, poisson } = self;
+        let Self { name, law, density, lambda, mu, young, poisson, plastic } = self;
+        if v.has("plastic") && law != Law::Hencky {
+            let what = format!("the law \"{}\" does not yield", law.word());
+            let why = "plastic flow is computed in logarithmic strains, those of the law \"hencky\"";
+            return v.wrong_key("plastic", what, why, "write `law = \"hencky\"`, or leave `plastic` out");
+        }
+        let plastic = if v.has("plastic") { Some(plastic?.resolved(&v.at("plastic")?)?) } else { None };
         match given.as_slice() {
             ["lambda", "mu"] => {
                 let lambda = lambda?;
@@ -74,13 +213,14 @@ impl MaterialKeys {
                     let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
                     v.wrong::<()>("lambda", what, why, format!("lambda must be > {}", -2.0 * mu / 3.0));
                 }
-                Some(MaterialSpec { name, law, density, lambda, mu })
+                Some(MaterialSpec { name, law, density, lambda, mu, plastic })
             }
             ["young", "poisson"] => {
                 let young = young?;
                 let poisson = poisson?;
                 let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
-                Some(MaterialSpec { name, law, density, lambda, mu: young / (2.0 * (1.0 + poisson)) })
+                let mu = young / (2.0 * (1.0 + poisson));
+                Some(MaterialSpec { name, law, density, lambda, mu, plastic })
             }
             given => {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
@@ -136,7 +276,7 @@ pub enum Plane {
 /// Constitutive law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Keys)]
 #[serde(rename_all = "kebab-case")]
-#[keys(later = ["plastic", "viscoelastic"])]
+#[keys(later = ["viscoelastic"])]
 pub enum Law {
     /// Ψ = μ(tr E − ln J) + Λ/2 (ln J)².
     NeoHookean,
@@ -144,6 +284,9 @@ pub enum Law {
     SaintVenantKirchhoff,
     /// Small strain, Ψ = Λ/2 (tr ε)² + μ ε : ε.
     LinearElastic,
+    /// Logarithmic strain ε = ½ ln F Fᵀ, Ψ = Λ/2 (tr ε)² + μ ε : ε; the law of metals, which may
+    /// yield (`plastic`).
+    Hencky,
 }
 
 /// A deformable body; its sides are written name.side.
@@ -232,6 +375,13 @@ impl BodySpec {
         let names = self.material_names();
         let index = |name: &String| names.iter().position(|known| known == name).unwrap_or(0);
         self.materials.values().map(index).collect()
+    }
+
+    /// Whether one of its materials yields.
+    pub(crate) fn yields(&self, materials: &[&MaterialSpec]) -> bool {
+        let names = self.material_names();
+        let is_own = |material: &&&MaterialSpec| names.contains(&material.name.as_str());
+        materials.iter().filter(is_own).any(|material| material.plastic.is_some())
     }
 
     /// Whether it has an initial velocity.

@@ -82,7 +82,13 @@ pub struct Case {
 }
 
 impl Case {
-    /// The material of a body.
+    /// Indices of the bodies of which a material yields.
+    pub fn yielding(&self) -> impl Iterator<Item = usize> {
+        let materials: Vec<&MaterialSpec> = self.materials.iter().collect();
+        (0..self.bodies.len()).filter(move |k| self.bodies[*k].yields(&materials))
+    }
+
+    /// The materials of a body.
     pub fn materials_of(&self, body: &BodySpec) -> Vec<&MaterialSpec> {
         let named = |name: &str| self.materials.iter().find(|material| material.name == name);
         body.material_names().into_iter().filter_map(named).collect()

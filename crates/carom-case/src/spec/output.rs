@@ -24,7 +24,7 @@ pub struct ProbeSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
     /// Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress,
-    /// volume ratio.
+    /// volume ratio, equivalent plastic strain.
     #[key(Choices(Quantity::WORDS), example = "[\"uy\", \"sigma_yy\"]")]
     pub record: Vec<Quantity>,
 }
@@ -69,6 +69,7 @@ pub enum Quantity {
     SigmaXz,
     VonMises,
     DetF,
+    PlasticStrain,
 }
 
 /// What is written, and how often.

@@ -15,7 +15,7 @@ fn word_by_word() {
         "a/case.toml:11:1: unknown key `densty` in [[material]]
   densty = 0.25
   ^^^^^^
-why: the keys of [[material]] are: name, law, density, lambda, mu, young, poisson
+why: the keys of [[material]] are: name, law, density, lambda, mu, young, poisson, plastic
 try: did you mean `density`?"
     );
     assert_eq!(
@@ -38,6 +38,47 @@ try: write for example `rho_inf = 1`"
 
 /// (overrides of the impact, what the message contains)
 const IMPACTS: &[(&[&str], &[&str])] = &[
+    // plastic flow
+    (
+        &["material.rubber.plastic={ yield = 1.0 }"],
+        &["the law \"neo-hookean\" does not yield", "write `law = \"hencky\"`"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ hardening = 1.0 }"],
+        &["`plastic` has no yield stress", "add `yield`, or a `table`"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ yield = 1.0, hardening = -2.0 }"],
+        &["softens to zero", "at a plastic strain of about 0.500", "0.0 is perfect plasticity"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ yield = -1.0 }"],
+        &["`yield` must be a number > 0, not -1"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ yield = 1.0, table = [[0.0, 1.0]] }"],
+        &["`table` and `yield` are given", "leave out `yield`, or `table`"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ table = [[0.0, 2.0], [0.1, 1.0]] }"],
+        &["the yield stress falls from 2 to 1 at a plastic strain of 0.1", "stay constant there"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ table = [[0.0, 1.0], [0.0, 2.0]] }"],
+        &["the plastic strain 0 of the table follows 0", "each once"],
+    ),
+    (
+        &["material.rubber.law=\"hencky\"", "material.rubber.plastic={ table = [[0.1, 1.0]] }"],
+        &["begins at a plastic strain of 0.1", "begin with the yield stress at 0.0"],
+    ),
+    (
+        &[
+            "material.rubber.law=\"hencky\"",
+            "material.rubber.plastic={ yield = 1.0 }",
+            "body.cylinder.element=\"T3\"",
+        ],
+        &["the element T3 locks where the material `rubber` flows", "use element = \"T6\""],
+    ),
     // types and ranges
     (&["material.rubber.density=heavy"], &["`density` must be a number ≥ 0, not the string \"heavy\""]),
     (

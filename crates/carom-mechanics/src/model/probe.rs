@@ -25,6 +25,8 @@ pub enum Quantity {
     VonMises,
     /// Volume ratio J.
     DetF,
+    /// Equivalent plastic strain of the nearest quadrature point.
+    PlasticStrain,
 }
 
 /// A resolved probe.
@@ -42,8 +44,7 @@ pub struct Probe {
 
 impl Probe {
     /// The recorded quantities at positions, velocities and accelerations of all nodes, and the
-    /// memory of all bodies, in order; a
-    /// stress is NaN if no cell at the point has one.
+    /// memory of all bodies, in order; a stress is NaN if no cell at the point has one.
     pub fn values(
         &self,
         parts: &[BodyInstance],
@@ -89,6 +90,7 @@ impl Probe {
                 (_, Ok(p)) => Some(match quantity {
                     Quantity::Stress(i, j) => p.cauchy[i][j],
                     Quantity::VonMises => von_mises(&p.cauchy),
+                    Quantity::PlasticStrain => p.plastic_strain,
                     _ => p.det_f,
                 }),
             };

@@ -14,7 +14,7 @@ use super::loads::{Loads, LoadsAt};
 use super::mass::Mass;
 use super::motion::Motions;
 use super::points::Points;
-use super::probe::Probe;
+use super::probe::{Probe, past_of};
 use super::rigid::Mode;
 use crate::cells;
 use crate::materials::Materials;
@@ -302,12 +302,21 @@ impl Model {
         turns.fold([0.0; 2], |most, one| [0, 1].map(|i| f64::max(most[i], one[i])))
     }
 
-    /// Smallest J over all quadrature points.
-    pub fn min_det_f(&self, y: &[f64]) -> f64 {
+    /// Largest equivalent plastic strain over the quadrature points of a body.
+    pub fn plastic_strain(&self, body: usize, memory: &[f64]) -> f64 {
+        let past = past_of(&self.parts, body, memory);
+        let body = &self.parts[body].body;
+        let strains = (0..body.mesh().cell_count()).map(|cell| body.cell_plastic_strain(cell, &past));
+        strains.fold(0.0, f64::max)
+    }
+
+    /// Smallest J over all quadrature points, which remember `memory`.
+    pub fn min_det_f(&self, y: &[f64], memory: &[f64]) -> f64 {
         let mut least = f64::INFINITY;
-        for part in &self.parts {
+        for (k, part) in self.parts.iter().enumerate() {
+            let past = past_of(&self.parts, k, memory);
             for cell in 0..part.body.mesh().cell_count() {
-                least = least.min(part.body.cell_min_det_f(cell, part.of(y)));
+                least = least.min(part.body.cell_min_det_f(cell, part.of(y), &past));
             }
         }
         least

@@ -304,7 +304,9 @@ impl<'a> Newton<'a> {
             check_rigid_modes(&model.parts, &model.unconstrained, &now.place, gaps, slips)?;
         }
         let made = self.renewal.made;
-        self.renewal.due |= settings.tangent == Tangent::Full;
+        // Where metal yields, the tangent is a thousand times softer than where it is elastic, and
+        // without inertia nothing else keeps the factor of one near that of the other.
+        self.renewal.due |= settings.tangent == Tangent::Full || is_static && model.remembers();
         let Workspace { linear, system, timings, .. } = &mut *self.work;
         timed(&mut timings.factor, || system.prepare(equations, now, rows, &mut self.renewal))?;
         let regularity = system.preconditioner.regularity().filter(|_| rows.is_skew);

@@ -4,7 +4,8 @@
 //! equations, Krenk 2006):
 //!
 //! ```text
-//! −ΔE = dissipation + (−contact_work)          by the integrator, and by contact forces and projections
+//! −ΔE = dissipation + (−contact_work) + (−plastic_work)
+//!       by the integrator, by contact forces and projections, by plastic flow
 //! ```
 //!
 //! All metrics are divided by the largest kinetic + strain energy of any row.
@@ -71,6 +72,12 @@ pub(super) fn by_integrator(given: &Given) -> Option<f64> {
 pub(super) fn by_friction(given: &Given) -> Option<f64> {
     given.history.column("slip")?;
     share(given, "friction_work").map(|work| 0.0 - work)
+}
+
+/// Energy dissipated by plastic flow, divided by the largest kinetic + strain energy; none of
+/// elastic bodies.
+pub(super) fn by_flow(given: &Given) -> Option<f64> {
+    share(given, "plastic_work").map(|work| 0.0 - work)
 }
 
 pub(super) fn by_contact(given: &Given) -> Option<f64> {

@@ -11,7 +11,7 @@ use super::{force, ledger, oscillation};
 use crate::units::Unit;
 
 /// Metrics of a history.
-pub(super) const HISTORY: [Definition; 27] = [
+pub(super) const HISTORY: [Definition; 28] = [
     d(
         "contact_start",
         Unit::Time,
@@ -167,6 +167,14 @@ pub(super) const HISTORY: [Definition; 27] = [
         OWN,
         "energy lost in friction by the end, divided by the largest kinetic + strain energy; above 1 where supports or obstacles supply it",
         ledger::by_friction,
+    ),
+    d(
+        "plastic_lost",
+        Unit::None,
+        "−W_p,last/E*",
+        OWN,
+        "energy dissipated by plastic flow by the end, divided by the largest kinetic + strain energy",
+        ledger::by_flow,
     ),
     d(
         "slip_distance",

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use carom_case::{
     BodySpec, Case, ContactSpec, FormulaSpec, Law, LoadKind, LoadSpec, MaterialSpec, ObstacleMotion,
-    Overhang, Plane, PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
+    Overhang, Plane, PlasticSpec, PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
 };
 use carom_record::FieldSet;
 use maud::{Markup, html};
@@ -105,11 +105,12 @@ fn body(case: &Case, body: &BodySpec, fields: Option<&FieldSet>) -> Row {
 }
 
 fn material(material: &MaterialSpec, units: &Units) -> Row {
-    let MaterialSpec { density, lambda, mu, .. } = *material;
+    let &MaterialSpec { density, lambda, mu, .. } = material;
     let law = match material.law {
         Law::NeoHookean => "neo-Hookean",
         Law::SaintVenantKirchhoff => "Saint Venant–Kirchhoff",
         Law::LinearElastic => "linear elastic",
+        Law::Hencky => "Hencky",
     };
     let poisson = lambda / (2.0 * (lambda + mu));
     let [young, lambda, shear] =
@@ -121,7 +122,26 @@ fn material(material: &MaterialSpec, units: &Units) -> Row {
         units.length,
         given(poisson)
     );
-    (html! { (material.name) }, html! { (Label(&words)) })
+    let yields = material.plastic.as_ref().map(|plastic| yields(plastic, units)).unwrap_or_default();
+    (html! { (material.name) }, html! { (Label(&words)) (Label(&yields)) })
+}
+
+/// Yield stress and hardening.
+fn yields(plastic: &PlasticSpec, units: &Units) -> String {
+    let amount = |x: f64| given_amount(x, &stress(units));
+    match plastic {
+        PlasticSpec::Formula { yield_stress, hardening, rise, rate } => {
+            let hardens = (*hardening > 0.0).then(|| format!(", hardening {}", amount(*hardening)));
+            let rises =
+                (*rise > 0.0).then(|| format!(", rise {} at the rate {}", amount(*rise), given(*rate)));
+            let [hardens, rises] = [hardens, rises].map(Option::unwrap_or_default);
+            format!(", yields at {}{hardens}{rises}", amount(*yield_stress))
+        }
+        PlasticSpec::Table(points) => {
+            let ends = [points.first(), points.last()].map(|point| point.map_or(0.0, |point| point[1]));
+            format!(", yields at {} to {} (table)", amount(ends[0]), amount(ends[1]))
+        }
+    }
 }
 
 /// `u_{x}`, by the number of its direction.

@@ -24,13 +24,15 @@ use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
 use carom_case::{
-    BodySpec, Case, FormulaSpec, MassKind, MaterialSpec, Plane, ProbeSpec, Problem, SKIN, TieSpec, Volumetric,
+    BodySpec, Case, FormulaSpec, MassKind, MaterialSpec, Plane, PlasticSpec, ProbeSpec, Problem, SKIN,
+    TieSpec, Volumetric,
 };
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, free_motions, gap_tolerance, redistribute, value,
 };
+use carom_solid::material::{Hardening, Hencky, J2, Table};
 use carom_solid::{
-    Body, Constitutive, Law, Mesh, PlaneState, RegionMaterial, SolidError, body_of_regions,
+    Body, Constitutive, Law, Mesh, PlaneState, RegionMaterial, SolidError, VolumeAveraged, body_of_regions,
     mean_dilatation_body,
 };
 
@@ -270,10 +272,15 @@ fn body(
 ) -> Result<Box<dyn Body>, SolidError> {
     let of_body = case.materials_of(spec);
     if spec.volumetric == Volumetric::Mean {
-        let material = |of: &&MaterialSpec| RegionMaterial { law: law(of), density: of.density };
-        return mean_dilatation_body(mesh, &of_body.iter().map(material).collect::<Vec<_>>(), case.thickness);
+        let averaged: Vec<_> = of_body.iter().map(|material| averaged(material)).collect();
+        let of_regions: Vec<_> = averaged
+            .iter()
+            .zip(&of_body)
+            .map(|(law, material)| RegionMaterial { law: &**law, density: material.density })
+            .collect();
+        return mean_dilatation_body(mesh, &of_regions, case.thickness);
     }
-    let of_case: Vec<_> = of_body.iter().map(|material| law(material).constitutive()).collect();
+    let of_case: Vec<_> = of_body.iter().map(|material| constitutive(material)).collect();
     let of_regions = of_body.iter().zip(&of_case).map(|(material, of_case)| RegionMaterial {
         law: &**materials.get(&material.name).unwrap_or(of_case),
         density: material.density,
@@ -285,7 +292,38 @@ fn body(
     body_of_regions(mesh, &of_regions.collect::<Vec<_>>(), plane, case.thickness)
 }
 
-/// The law of a material of the case.
+/// The law of a material of the case, with its plastic flow.
+fn constitutive(material: &MaterialSpec) -> Box<dyn Constitutive> {
+    match plastic(material) {
+        Some(law) => Box::new(law),
+        None => law(material).constitutive(),
+    }
+}
+
+/// The law of a material of the case, for mean dilatation.
+fn averaged(material: &MaterialSpec) -> Box<dyn VolumeAveraged> {
+    match plastic(material) {
+        Some(law) => Box::new(law),
+        None => Box::new(law(material)),
+    }
+}
+
+/// The law of a material that yields; none of others.
+fn plastic(material: &MaterialSpec) -> Option<J2> {
+    let elastic = Hencky { lambda: material.lambda, mu: material.mu };
+    let hardening = match material.plastic.as_ref()? {
+        &PlasticSpec::Formula { yield_stress, hardening: modulus, rise: 0.0, .. } => {
+            Hardening::Linear { yield_stress, modulus }
+        }
+        &PlasticSpec::Formula { yield_stress, hardening: modulus, rise, rate } => {
+            Hardening::Voce { yield_stress, modulus, rise, rate }
+        }
+        PlasticSpec::Table(points) => Hardening::Table(Table::new(points)?),
+    };
+    Some(J2 { elastic, hardening })
+}
+
+/// The elastic law of a material of the case.
 fn law(material: &MaterialSpec) -> Law {
     let lambda = material.lambda;
     let mu = material.mu;
@@ -293,6 +331,7 @@ fn law(material: &MaterialSpec) -> Law {
         carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
         carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
         carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
+        carom_case::Law::Hencky => Law::Hencky { lambda, mu },
     }
 }
 
@@ -399,7 +438,10 @@ fn on_one_side(
         });
     }
     let has_sides = |name: &carom_case::Quantity| {
-        matches!(quantity(*name), Quantity::Stress(..) | Quantity::VonMises | Quantity::DetF)
+        matches!(
+            quantity(*name),
+            Quantity::Stress(..) | Quantity::VonMises | Quantity::DetF | Quantity::PlasticStrain
+        )
     };
     (there.len() > 1 && spec.record.iter().any(has_sides)).then(|| {
         let what = format!("probe \"{}\" lies where materials meet", spec.name);
@@ -430,5 +472,6 @@ pub(crate) fn quantity(name: carom_case::Quantity) -> Quantity {
         Name::SigmaXz => Quantity::Stress(0, 2),
         Name::VonMises => Quantity::VonMises,
         Name::DetF => Quantity::DetF,
+        Name::PlasticStrain => Quantity::PlasticStrain,
     }
 }

@@ -40,9 +40,18 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     weights
 }
 
+/// What the rows of a run need beside its state.
+pub(super) struct Recorded {
+    /// Weights of a body's nodes in its centre of mass.
+    pub(super) weights: Vec<f64>,
+    /// Bodies that yield.
+    pub(super) yielding: Vec<usize>,
+}
+
 /// The row of the current state, in the order of
 /// [`history_columns`](carom_case::history_columns).
-pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Vec<f64> {
+pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<f64> {
+    let Recorded { weights, yielding } = of;
     let model = simulation.model();
     let state = simulation.state();
     let ledger = &state.ledger;
@@ -76,7 +85,7 @@ pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Ve
     row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
     row.extend(simulation.has_fallback().then_some(f64::from(since.fallbacks)));
     row.extend([since.penetration.all, since.penetration.constrained]);
-    row.push(model.min_det_f(&state.y));
+    row.push(model.min_det_f(&state.y, state.materials.past(0.0).memory));
     if rubs(model) {
         let sticks = |pair: &&Pair| pair.active && pair.tangential.friction_state == FrictionState::Stick;
         let rubbing =
@@ -88,6 +97,14 @@ pub(super) fn row(simulation: &Simulation, since: &Since, weights: &[f64]) -> Ve
         for field in [&state.y, &state.v] {
             row.extend((0..d).map(|i| mean(part, field, weights, i)));
         }
+    }
+    if !yielding.is_empty() {
+        row.push(0.0 - ledger.materials);
+    }
+    let memory = state.materials.past(0.0).memory;
+    for &body in yielding {
+        row.push(0.0 - state.materials.dissipated().get(body).copied().unwrap_or(0.0));
+        row.push(model.plastic_strain(body, memory));
     }
     if model.contacts.len() > 1 {
         row.extend(state.contact_forces.iter().flat_map(|f| f[..d].to_vec()));

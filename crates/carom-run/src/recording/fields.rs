@@ -1,5 +1,5 @@
 //! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) with
-//! its von Mises and principal stresses, principal strains, and contact pressure.
+//! its von Mises and principal stresses, principal strains, contact pressure, and plastic strain.
 //!
 //! Principal strains are logarithmic (H. Hencky, Z. techn. Phys. 9, 1928): ln λᵢ with the principal
 //! stretches λᵢ, the same in the reference and the current configuration, of nodal means of the
@@ -27,7 +27,7 @@ pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: 
     };
     // The nodes that carry obstacles come last, and belong to no body.
     let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
-    let (stress, strain) = nodal_means(model, state);
+    let Means { stress, strain, plastic } = nodal_means(model, state);
     let mises: Vec<f64> = stress.iter().map(|s| von_mises(&tensor(s))).collect();
     let principal_stress: Vec<f64> = stress.iter().flat_map(|s| principal(tensor(s))).collect();
     let principal_strain: Vec<f64> = strain.iter().flat_map(|e| logarithmic(principal(tensor(e)))).collect();
@@ -45,6 +45,9 @@ pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: 
         ],
         materials: materials(case, model),
     };
+    if case.yielding().next().is_some() {
+        set.arrays.push(array("plastic_strain", "", 1, plastic));
+    }
     set.points.truncate(nodes);
     set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
     set
@@ -130,11 +133,20 @@ fn tensor(&[xx, yy, zz, xy, yz, xz]: &Components) -> [[f64; 3]; 3] {
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 
-/// Cauchy stress and Green–Lagrange strain at the nodes, mean over the cells of a node where they
-/// exist; NaN if they exist in none (J ≤ 0).
-fn nodal_means(model: &Model, state: &State) -> (Vec<Components>, Vec<Components>) {
+/// Means over the cells of each node where they exist; NaN if they exist in none (J ≤ 0).
+struct Means {
+    /// Cauchy stress.
+    stress: Vec<Components>,
+    /// Green–Lagrange strain.
+    strain: Vec<Components>,
+    /// Equivalent plastic strain, of the quadrature point nearest to the node in each cell.
+    plastic: Vec<f64>,
+}
+
+fn nodal_means(model: &Model, state: &State) -> Means {
     let nodes = model.mass.nodes();
     let mut means = [vec![[0.0; 6]; nodes], vec![[0.0; 6]; nodes]];
+    let mut plastic = vec![0.0; nodes];
     let mut count = vec![0.0_f64; nodes];
     for (k, part) in model.parts.iter().enumerate() {
         let past = past_of(&model.parts, k, state.materials.past(0.0).memory);
@@ -146,6 +158,7 @@ fn nodal_means(model: &Model, state: &State) -> (Vec<Components>, Vec<Components
                 let node = part.first_node + node;
                 let Ok(point) = part.body.point(cell, xi, y, &past) else { continue };
                 count[node] += 1.0;
+                plastic[node] += point.plastic_strain;
                 for (mean, value) in means.iter_mut().zip([point.cauchy, point.strain]) {
                     mean[node].iter_mut().zip(components(&value)).for_each(|(sum, c)| *sum += c);
                 }
@@ -155,7 +168,9 @@ fn nodal_means(model: &Model, state: &State) -> (Vec<Components>, Vec<Components
     for mean in &mut means {
         mean.iter_mut().zip(&count).for_each(|(sum, n)| sum.iter_mut().for_each(|x| *x /= n));
     }
-    means.into()
+    plastic.iter_mut().zip(&count).for_each(|(sum, n)| *sum /= n);
+    let [stress, strain] = means;
+    Means { stress, strain, plastic }
 }
 
 fn pressures(surfaces: &Surfaces, model: &Model, state: &State) -> Vec<f64> {

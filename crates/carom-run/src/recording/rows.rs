@@ -7,13 +7,13 @@ use carom_mechanics::model::{Contact, Model};
 use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
 use carom_record::{Column, ContactRow};
 
-use super::columns::{Since, center_weights, row};
+use super::columns::{Recorded, Since, center_weights, row};
 use super::pressure::Surfaces;
 
 /// Rows of a simulation that is advanced step by step.
 pub struct Rows {
     columns: Vec<Column>,
-    weights: Vec<f64>,
+    recorded: Recorded,
     pub(super) surfaces: Surfaces,
     /// Events since the previous row.
     pub(super) since: Since,
@@ -28,7 +28,7 @@ impl Rows {
         let model = simulation.model();
         let mut rows = Self {
             columns: history_columns(case),
-            weights: center_weights(model),
+            recorded: Recorded { weights: center_weights(model), yielding: case.yielding().collect() },
             surfaces: Surfaces::new(model, case.thickness),
             since: Since::default(),
         };
@@ -50,7 +50,7 @@ impl Rows {
 
     /// The row of the current state.
     pub fn row(&self, simulation: &Simulation) -> Vec<f64> {
-        row(simulation, &self.since, &self.weights)
+        row(simulation, &self.since, &self.recorded)
     }
 
     /// The active contact nodes of the current state.

@@ -58,7 +58,7 @@ fn drift(sets: &[&str]) -> (f64, [f64; 3], f64, f64) {
         {
             *lost = lost.max((now / start - 1.0).abs());
         }
-        least = least.min(sim.model().min_det_f(&sim.state().y));
+        least = least.min(sim.model().min_det_f(&sim.state().y, &[]));
     }
     (worst, lost, least, f64::from(newton) / sim.steps() as f64)
 }

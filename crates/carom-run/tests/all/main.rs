@@ -34,6 +34,7 @@ mod overlap;
 mod own;
 mod particle;
 mod placed;
+mod plastic;
 mod pressing;
 mod prisms;
 mod probe;

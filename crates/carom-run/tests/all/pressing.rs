@@ -45,7 +45,7 @@ fn started(model: Model) -> Simulation {
         pairing.pairs
     };
     let pairs = model.contacts.iter().map(closed).collect();
-    let before = InitialState { y: y.clone(), v: vec![0.0; model.dofs()], pairs };
+    let before = InitialState { y: y.clone(), v: vec![0.0; model.dofs()], pairs, memory: Vec::new() };
     let settings = Settings {
         tolerance: 1e-9,
         max_iterations: 20,

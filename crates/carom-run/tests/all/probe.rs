@@ -25,7 +25,7 @@ fn a_corner_turned_over_has_j_but_no_stress() {
     assert!(corner.has_stress(&model.parts, &state.y, &[]));
     let middle = model.reference.as_chunks::<2>().0.iter().position(|x| *x == [0.5, 0.0]).unwrap();
     state.y[2 * middle] = 0.8;
-    assert!(model.min_det_f(&state.y) > 0.0);
+    assert!(model.min_det_f(&state.y, &[]) > 0.0);
     assert!(
         !corner.has_stress(&model.parts, &state.y, &[]) && shared.has_stress(&model.parts, &state.y, &[])
     );

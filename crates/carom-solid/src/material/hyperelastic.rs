@@ -19,7 +19,8 @@ pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 /// A law with memory has, for the memory at the start of a step and the length of the step, an
 /// incremental potential ΔW(F) = Ψ + 𝒟 of the stored energy Ψ and the energy 𝒟 that is dissipated
 /// in the step; the stress is ∂ΔW/∂F. It states [`Material::MEMORY`], [`Material::after`],
-/// [`Material::remember`] and [`Material::dissipated`]; others need none of these.
+/// [`Material::remember`] and [`Material::dissipated`]; others need none of these. One that yields
+/// adds [`Material::YIELDS`], [`Material::unevolved`] and [`Material::released`].
 pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize;
@@ -29,6 +30,9 @@ pub trait Material<const D: usize>: Send + Sync {
 
     /// Count of numbers that a quadrature point remembers; all are zero at the start of a run.
     const MEMORY: usize = 0;
+
+    /// Whether ΔW lacks a second derivative where flow begins within a step.
+    const YIELDS: bool = false;
 
     /// Kinematics at a point.
     type Point;
@@ -47,6 +51,25 @@ pub trait Material<const D: usize>: Send + Sync {
 
     /// Energy per reference volume that is dissipated in the step.
     fn dissipated(&self, _: &Self::Point) -> f64 {
+        0.0
+    }
+
+    /// The point of a law that yields as if nothing evolved in the step, if it is known with
+    /// [`Material::released`].
+    #[inline(always)]
+    fn unevolved(&self, _: &Self::Point) -> Option<Self::Point> {
+        None
+    }
+
+    /// Energy by which ΔW is below that of [`Material::unevolved`], zero without flow; not as their
+    /// difference, which would consist of round-off for small steps.
+    #[inline(always)]
+    fn released(&self, _: &Self::Point) -> f64 {
+        0.0
+    }
+
+    /// Equivalent plastic strain in what a point remembers.
+    fn plastic_strain(&self, _: &[f64]) -> f64 {
         0.0
     }
 
@@ -123,15 +146,12 @@ pub trait Material<const D: usize>: Send + Sync {
     fn lateral(&self, point: &Self::Point) -> f64;
 
     /// F − 1 in the directions in which the body does not extend.
-    ///
-    /// # Errors
-    /// If there is none at H.
-    fn lateral_excess(&self, _: &Mat<D>) -> Result<f64, NotPositive> {
-        Ok(0.0)
+    fn lateral_excess(&self, _: &Self::Point) -> f64 {
+        0.0
     }
 
     /// Determinant J of the three-dimensional deformation gradient, positive or not.
-    fn volume_ratio(&self, h: &Mat<D>) -> f64 {
+    fn volume_ratio(&self, h: &Mat<D>, _: &Past) -> f64 {
         1.0 + excess_det(h)
     }
 }

@@ -1,6 +1,6 @@
 //! The available laws, chosen at run time.
 
-use super::{LinearElastic, NeoHookean, Pointwise, SaintVenantKirchhoff};
+use super::{Hencky, LinearElastic, NeoHookean, Pointwise, SaintVenantKirchhoff};
 
 /// A law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,7 @@ pub enum Law {
     NeoHookean { lambda: f64, mu: f64 },
     SaintVenantKirchhoff { lambda: f64, mu: f64 },
     LinearElastic { lambda: f64, mu: f64 },
+    Hencky { lambda: f64, mu: f64 },
 }
 
 impl Law {
@@ -18,6 +19,7 @@ impl Law {
             Self::NeoHookean { lambda, mu } => Box::new(NeoHookean { lambda, mu }),
             Self::SaintVenantKirchhoff { lambda, mu } => Box::new(SaintVenantKirchhoff { lambda, mu }),
             Self::LinearElastic { lambda, mu } => Box::new(LinearElastic { lambda, mu }),
+            Self::Hencky { lambda, mu } => Box::new(Hencky { lambda, mu }),
         }
     }
 }

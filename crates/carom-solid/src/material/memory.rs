@@ -20,11 +20,22 @@ pub(crate) struct Incremental<'a, L> {
 impl<const D: usize, L: Material<D>> Material<D> for Incremental<'_, L> {
     const ENERGY_DEGREE: usize = L::ENERGY_DEGREE;
     const OBJECTIVE: bool = L::OBJECTIVE;
+    const YIELDS: bool = L::YIELDS;
     type Point = L::Point;
 
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<L::Point, NotPositive> {
         self.law.after(h, &self.past)
+    }
+
+    #[inline(always)]
+    fn unevolved(&self, point: &L::Point) -> Option<L::Point> {
+        self.law.unevolved(point)
+    }
+
+    #[inline(always)]
+    fn released(&self, point: &L::Point) -> f64 {
+        self.law.released(point)
     }
 
     #[inline(always)]
@@ -42,6 +53,11 @@ impl<const D: usize, L: Material<D>> Material<D> for Incremental<'_, L> {
         self.law.tangent(point, a, b)
     }
 
+    #[inline(always)]
+    fn change(&self, point: &L::Point, df: &Mat<D>) -> Mat<D> {
+        self.law.change(point, df)
+    }
+
     fn cauchy(&self, point: &L::Point) -> Mat<D> {
         self.law.cauchy(point)
     }
@@ -50,11 +66,11 @@ impl<const D: usize, L: Material<D>> Material<D> for Incremental<'_, L> {
         self.law.lateral(point)
     }
 
-    fn lateral_excess(&self, h: &Mat<D>) -> Result<f64, NotPositive> {
-        self.law.lateral_excess(h)
+    fn lateral_excess(&self, point: &L::Point) -> f64 {
+        self.law.lateral_excess(point)
     }
 
-    fn volume_ratio(&self, h: &Mat<D>) -> f64 {
-        self.law.volume_ratio(h)
+    fn volume_ratio(&self, h: &Mat<D>, _: &Past) -> f64 {
+        self.law.volume_ratio(h, &self.past)
     }
 }

@@ -9,7 +9,10 @@
 //! Laws take H rather than F, and no formula subtracts nearly equal numbers for small H:
 //! displacements of 1e-9 keep their accuracy.
 
+mod hardening;
+mod hencky;
 mod hyperelastic;
+mod j2;
 mod kinematics;
 mod law;
 mod linear_elastic;
@@ -18,10 +21,14 @@ mod neo_hookean;
 mod past;
 mod plane_stress;
 mod pointwise;
+mod principal_frame;
 mod saint_venant_kirchhoff;
 mod volumetric;
 
+pub use hardening::{Hardening, Table};
+pub use hencky::Hencky;
 pub use hyperelastic::{AtPoints, InLanes, Material};
+pub use j2::J2;
 pub use kinematics::NotPositive;
 pub use kinematics::{excess_cofactor, excess_det};
 pub use law::Law;

@@ -10,52 +10,90 @@
 use carom_algebra::{Mat, Vector};
 
 use super::kinematics::excess_det;
+use super::past::Past;
 use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
 
 /// A law that admits plane stress.
 pub trait Thickness: Material<3> {
-    /// F₃₃ − 1 at which P₃₃ = 0: Newton's method on the law's own stress and tangent, its steps
-    /// halved where they would leave F₃₃ > 0 or make |P₃₃| larger. A law that knows a formula
-    /// replaces it.
+    /// F₃₃ − 1 at which P₃₃ = 0, of a law without memory. A law that knows a formula replaces it.
     ///
     /// # Errors
     /// If J of the plane is not positive, or no positive stress-free stretch is found.
     fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
-        let plane = 1.0 + excess_det(h);
-        if plane <= 0.0 || plane.is_nan() {
-            return Err(NotPositive(plane));
-        }
-        let [[a, b], [c, d]] = h.0;
-        let at = |across: f64| self.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]));
-        let mut across = 0.0;
-        let mut point = at(across)?;
-        let mut last = f64::INFINITY;
-        for _ in 0..100 {
-            let stress = self.stress(&point).0[2][2];
-            let stiffness = self.tangent(&point, &E3, &E3).0[2][2];
-            let mut step = stress / stiffness;
-            // Converged to round-off: steps no longer shrink.
-            let rounded = step.abs() >= last && last < 1e-9;
-            if step.abs() <= 2.0 * f64::EPSILON * (1.0 + across) || rounded {
-                return Ok(across - step);
-            }
-            last = step.abs();
-            if !(stiffness > 0.0 && step.is_finite()) {
-                break;
-            }
-            let mut next = at(across - step);
-            // The last digits need not make the stress smaller.
-            while step.abs() > 1e-12
-                && !next.as_ref().is_ok_and(|next| self.stress(next).0[2][2].abs() < stress.abs())
-            {
-                step *= 0.5;
-                next = at(across - step);
-            }
-            across -= step;
-            point = next?;
-        }
-        Err(NotPositive(0.0))
+        stress_free(self, h, 0.0, |h| self.at(h))
     }
+
+    /// F₃₃ − 1 from which the search begins, of a law with memory.
+    fn first_stretch(&self, _: &Past) -> f64 {
+        0.0
+    }
+
+    /// F₃₃ − 1 at which P₃₃ = 0, from the memory at the start of a step.
+    ///
+    /// # Errors
+    /// As [`Self::excess_stretch`].
+    fn excess_stretch_after(&self, h: &Mat<2>, past: &Past) -> Result<f64, NotPositive> {
+        if Self::MEMORY == 0 {
+            return self.excess_stretch(h);
+        }
+        stress_free(self, h, self.first_stretch(past), |h| self.after(h, past))
+    }
+}
+
+/// F₃₃ − 1 at which P₃₃ = 0: Newton's method on the law's own stress and tangent, its steps halved
+/// where they would leave F₃₃ > 0 or make |P₃₃| larger.
+fn stress_free<L: Thickness + ?Sized>(
+    law: &L,
+    h: &Mat<2>,
+    first: f64,
+    at: impl Fn(&Mat<3>) -> Result<L::Point, NotPositive>,
+) -> Result<f64, NotPositive> {
+    let plane = 1.0 + excess_det(h);
+    if plane <= 0.0 || plane.is_nan() {
+        return Err(NotPositive(plane));
+    }
+    let at = |across: f64| at(&in_space(h, across));
+    let mut across = first;
+    let mut point = at(across)?;
+    let mut last = f64::INFINITY;
+    for _ in 0..100 {
+        let stress = law.stress(&point).0[2][2];
+        let stiffness = law.tangent(&point, &E3, &E3).0[2][2];
+        let mut step = stress / stiffness;
+        // Converged to round-off: steps no longer shrink.
+        let rounded = step.abs() >= last && last < 1e-9;
+        if step.abs() <= 2.0 * f64::EPSILON * (1.0 + across) || rounded {
+            return Ok(across - step);
+        }
+        last = step.abs();
+        if !(stiffness > 0.0 && step.is_finite()) {
+            break;
+        }
+        let mut next = at(across - step);
+        // The last digits need not make the stress smaller.
+        while step.abs() > 1e-12
+            && !next.as_ref().is_ok_and(|next| law.stress(next).0[2][2].abs() < stress.abs())
+        {
+            step *= 0.5;
+            next = at(across - step);
+        }
+        across -= step;
+        point = next?;
+    }
+    Err(NotPositive(0.0))
+}
+
+/// H of a sheet with a stretch across.
+fn in_space(h: &Mat<2>, across: f64) -> Mat<3> {
+    let [[a, b], [c, d]] = h.0;
+    Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]])
+}
+
+/// A point of a sheet.
+pub struct SheetPoint<P> {
+    of: P,
+    /// F₃₃ − 1.
+    across: f64,
 }
 
 /// A three-dimensional law in plane stress.
@@ -67,54 +105,78 @@ const E3: Vector<3> = Vector([0.0, 0.0, 1.0]);
 impl<L: Thickness> Material<2> for PlaneStress<L> {
     const ENERGY_DEGREE: usize = <L as Material<3>>::ENERGY_DEGREE;
     const OBJECTIVE: bool = <L as Material<3>>::OBJECTIVE;
-    // A law with memory is refused in plane stress: its thickness would evolve, too.
     const MEMORY: usize = <L as Material<3>>::MEMORY;
-    type Point = <L as Material<3>>::Point;
+    const YIELDS: bool = <L as Material<3>>::YIELDS;
+    type Point = SheetPoint<<L as Material<3>>::Point>;
 
     // Not inlined: a call costs little compared with the solution for the thickness.
     #[inline(never)]
     fn at(&self, h: &Mat<2>) -> Result<Self::Point, NotPositive> {
         let across = self.0.excess_stretch(h)?;
-        let [[a, b], [c, d]] = h.0;
-        self.0.at(&Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]))
+        Ok(SheetPoint { of: self.0.at(&in_space(h, across))?, across })
+    }
+
+    #[inline(never)]
+    fn after(&self, h: &Mat<2>, past: &Past) -> Result<Self::Point, NotPositive> {
+        let across = self.0.excess_stretch_after(h, past)?;
+        Ok(SheetPoint { of: self.0.after(&in_space(h, across), past)?, across })
+    }
+
+    fn remember(&self, point: &Self::Point, memory: &mut [f64]) {
+        self.0.remember(&point.of, memory);
+    }
+
+    fn dissipated(&self, point: &Self::Point) -> f64 {
+        self.0.dissipated(&point.of)
+    }
+
+    fn plastic_strain(&self, memory: &[f64]) -> f64 {
+        self.0.plastic_strain(memory)
+    }
+
+    fn released(&self, point: &Self::Point) -> f64 {
+        self.0.released(&point.of)
     }
 
     #[inline(always)]
     fn energy(&self, point: &Self::Point) -> f64 {
-        self.0.energy(point)
+        self.0.energy(&point.of)
     }
 
     #[inline(always)]
     fn stress(&self, point: &Self::Point) -> Mat<2> {
-        within(&self.0.stress(point))
+        within(&self.0.stress(&point.of))
     }
 
     #[inline(never)]
     fn tangent(&self, point: &Self::Point, a: &Vector<2>, b: &Vector<2>) -> Mat<2> {
         let [a, b] = [a, b].map(|v| Vector([v[0], v[1], 0.0]));
-        let coupled = |v: &Vector<3>| self.0.tangent(point, v, &E3).0.map(|row| row[2]);
+        let coupled = |v: &Vector<3>| self.0.tangent(&point.of, v, &E3).0.map(|row| row[2]);
         let left = coupled(&a);
         let right = coupled(&b);
-        let across = self.0.tangent(point, &E3, &E3).0[2][2];
-        within(&self.0.tangent(point, &a, &b))
+        let across = self.0.tangent(&point.of, &E3, &E3).0[2][2];
+        within(&self.0.tangent(&point.of, &a, &b))
             - Vector([left[0], left[1]]).outer(&Vector([right[0], right[1]])) * (1.0 / across)
     }
 
     fn cauchy(&self, point: &Self::Point) -> Mat<2> {
-        within(&self.0.cauchy(point))
+        within(&self.0.cauchy(&point.of))
     }
 
     fn lateral(&self, _: &Self::Point) -> f64 {
         0.0
     }
 
-    fn lateral_excess(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
-        self.0.excess_stretch(h)
+    fn lateral_excess(&self, point: &Self::Point) -> f64 {
+        point.across
     }
 
-    fn volume_ratio(&self, h: &Mat<2>) -> f64 {
+    fn volume_ratio(&self, h: &Mat<2>, past: &Past) -> f64 {
         let plane = 1.0 + excess_det(h);
-        self.0.excess_stretch(h).map_or(plane, |across| plane * (1.0 + across))
+        // Without a memory it is the start of a run.
+        let virgin = past.memory.is_empty();
+        let across = if virgin { self.0.excess_stretch(h) } else { self.0.excess_stretch_after(h, past) };
+        across.map_or(plane, |across| plane * (1.0 + across))
     }
 }
 

@@ -84,6 +84,9 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::MEMORY`].
     fn memory(&self) -> usize;
 
+    /// [`Material::plastic_strain`].
+    fn plastic_strain_of(&self, memory: &[f64]) -> f64;
+
     /// A step of a law with memory.
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive>;
 
@@ -91,7 +94,7 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive>;
 
     /// [`Material::volume_ratio`].
-    fn volume_ratio_at(&self, h: &Mat<D>) -> f64;
+    fn volume_ratio_at(&self, h: &Mat<D>, past: &Past) -> f64;
 
     /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ from ∂²y/∂X∂X as `[k][J][L]`.
     fn divergence(&self, h: &Mat<D>, second: &[f64]) -> Result<Vector<D>, NotPositive>;
@@ -179,6 +182,10 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         L::MEMORY
     }
 
+    fn plastic_strain_of(&self, memory: &[f64]) -> f64 {
+        self.plastic_strain(memory)
+    }
+
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {
         let unit = Mat::<D>::identity().0.map(Vector);
         for l in 0..step.count {
@@ -211,17 +218,18 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive> {
         // Without a memory it is the start of a run.
         let point = if past.memory.is_empty() { self.at(h)? } else { self.after(h, past)? };
-        let across = self.lateral_excess(h)?;
+        let across = self.lateral_excess(&point);
         let strain = (*h + h.transposed() + h.transposed() * *h) * 0.5;
         Ok(PointState {
-            det_f: self.volume_ratio(h),
+            det_f: self.volume_ratio(h, past),
             cauchy: in_space(&self.cauchy(&point), self.lateral(&point)),
             strain: in_space(&strain, across + 0.5 * across * across),
+            plastic_strain: self.plastic_strain(past.memory),
         })
     }
 
-    fn volume_ratio_at(&self, h: &Mat<D>) -> f64 {
-        self.volume_ratio(h)
+    fn volume_ratio_at(&self, h: &Mat<D>, past: &Past) -> f64 {
+        self.volume_ratio(h, past)
     }
 
     fn divergence(&self, h: &Mat<D>, second: &[f64]) -> Result<Vector<D>, NotPositive> {

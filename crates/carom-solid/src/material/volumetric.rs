@@ -5,6 +5,7 @@
 //! neo-Hookean             q = J − 1    ∂q/∂F = cof F    W = Λ/2 (ln (1 + q))²
 //! St. Venant–Kirchhoff    q = tr E     ∂q/∂F = F        W = Λ/2 q²
 //! linear elastic          q = tr ε     ∂q/∂F = I        W = Λ/2 q²
+//! Hencky, plastic         q = J − 1    ∂q/∂F = cof F    W = K/2 (ln (1 + q))²,   K = Λ + 2μ/3
 //! ```
 //!
 //! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents
@@ -13,7 +14,7 @@
 use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
-use super::{Law, Material, NotPositive, Pointwise};
+use super::{Hencky, J2, Law, Material, NotPositive, Pointwise};
 
 /// What mean dilatation needs of a law.
 pub(crate) struct Mean<const D: usize> {
@@ -39,8 +40,24 @@ impl Law {
                 let rest = Self::LinearElastic { lambda: 0.0, mu };
                 (rest, Box::new(SmallSwelling), Volumetric::Quadratic(lambda))
             }
+            // The whole resistance to changes of volume is averaged: plastic flow is isochoric,
+            // and any of it at the points of a cell would lock the cell.
+            Self::Hencky { lambda, mu } => {
+                let law = Hencky { lambda, mu };
+                let rest = Self::Hencky { lambda: law.without_bulk().lambda, mu };
+                (rest, Box::new(Swelling), Volumetric::Logarithmic(law.bulk()))
+            }
         };
         (rest, Mean { law: self.pointwise(), measure, volumetric })
+    }
+}
+
+impl J2 {
+    /// The same law without resistance to changes of volume, and what mean dilatation adds.
+    pub(crate) fn averaged<const D: usize>(&self) -> (Self, Mean<D>) {
+        let rest = Self { elastic: self.elastic.without_bulk(), hardening: self.hardening.clone() };
+        let volumetric = Volumetric::Logarithmic(self.elastic.bulk());
+        (rest, Mean { law: Box::new(self.clone()), measure: Box::new(Swelling), volumetric })
     }
 }
 

@@ -150,15 +150,25 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         Ok(())
     }
 
-    fn cell_min_det_f(&self, cell: usize, y: &[f64]) -> f64 {
+    fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64 {
         let u = self.displacements(cell, y);
         let law = &self.medium(cell).law;
+        let past = past.part(cell, self.memory);
+        let size = law.memory();
         let Place { points, inverse, .. } = &self.places[cell];
-        let ratios = self.points[points.clone()].iter().flat_map(|points| {
+        let blocks = self.points[points.clone()].iter().enumerate();
+        let ratios = blocks.flat_map(|(block, points)| {
             let h = points.gradient(&u, inverse);
-            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l)))
+            let first = block * LANES;
+            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l), &past.part(first + l, size)))
         });
         ratios.fold(f64::INFINITY, f64::min)
+    }
+
+    fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64 {
+        let law = &self.medium(cell).law;
+        let points = past.part(cell, self.memory).memory.chunks_exact(law.memory().max(1));
+        points.map(|memory| law.plastic_strain_of(memory)).fold(0.0, f64::max)
     }
 
     fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
@@ -213,29 +223,25 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         memory: &mut [f64],
     ) -> Result<f64, Inverted> {
         let Medium { law, mean, .. } = self.medium(cell);
-        if self.memory > 0 {
-            return self.evolve(&**law, cell, at, ask, numbers, memory);
-        }
-        match (ask, at.before) {
-            (Ask::Force, None) => self.force(cell, at.y, numbers),
-            (Ask::Force, Some(before)) => {
-                let energy = self.between_of(&**law, cell, [before, at.y], numbers)?;
-                let Some(mean) = mean else { return Ok(energy) };
-                Ok(energy + self.add_mean_between(mean, cell, [before, at.y], numbers)?)
+        let energy = if self.memory > 0 {
+            self.evolve(&**law, cell, at, ask, numbers, memory)?
+        } else {
+            match (ask, at.before) {
+                // The mean dilatation is in the same pass over the points.
+                (Ask::Force, None) => return self.force(cell, at.y, numbers),
+                (Ask::Force, Some(before)) => self.between_of(&**law, cell, [before, at.y], numbers)?,
+                (Ask::Tangent, _) => {
+                    let (force, tangent) = numbers.split_at_mut(N * D);
+                    self.tangent_of(&**law, cell, at.y, force, tangent)?
+                }
+                (Ask::Product(change), before) => {
+                    self.product_of(&**law, cell, before, [at.y, change], numbers)?;
+                    0.0
+                }
             }
-            (Ask::Tangent, _) => {
-                let (force, tangent) = numbers.split_at_mut(N * D);
-                let energy = self.tangent_of(&**law, cell, at.y, force, tangent)?;
-                let Some(mean) = mean else { return Ok(energy) };
-                Ok(energy + self.add_mean_tangent(mean, cell, at.y, force, tangent)?)
-            }
-            (Ask::Product(change), before) => {
-                self.product_of(&**law, cell, before, [at.y, change], numbers)?;
-                let Some(mean) = mean else { return Ok(0.0) };
-                self.add_mean_product(mean, cell, before, [at.y, change], numbers)?;
-                Ok(0.0)
-            }
-        }
+        };
+        let Some(mean) = mean else { return Ok(energy) };
+        Ok(energy + self.add_mean(mean, cell, at, ask, numbers)?)
     }
 
     /// Force of a cell; returns its energy.

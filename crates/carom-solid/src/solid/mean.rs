@@ -18,23 +18,14 @@
 use carom_algebra::wide;
 
 use super::integrals::scale;
-use super::{Medium, Place, Solid};
-use crate::body::{Inverted, PointState};
-use crate::material::{Law, Mean, NotPositive, Past, Pointwise};
+use super::{Place, Solid};
+use crate::body::{Ask, Configuration, Inverted, PointState};
+use crate::material::{Mean, NotPositive, Past, Pointwise};
 use crate::points::{LANES, sum};
 use crate::shape::Shape;
 
 /// Blocks of quadrature points of a cell: eight points of Hex8, the largest that has this.
 const BLOCKS: usize = 2;
-
-impl<const D: usize> Medium<D> {
-    /// Material of a law whose volumetric energy depends on one measure of the change of volume of
-    /// each cell.
-    pub(crate) fn averaged(law: Law, density: f64) -> Self {
-        let (rest, mean) = law.averaged();
-        Self { law: rest.pointwise(), mean: Some(mean), density }
-    }
-}
 
 /// The volumetric part of a cell: its force without the pressure, g, and m.
 struct Swelling {
@@ -133,8 +124,36 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         Ok(energy + cell_volume * swelling)
     }
 
+    /// Adds the volumetric part of a response; returns its energy, zero of a product.
+    pub(super) fn add_mean(
+        &self,
+        mean: &Mean<D>,
+        cell: usize,
+        at: &Configuration,
+        ask: Ask,
+        numbers: &mut [f64],
+    ) -> Result<f64, Inverted> {
+        match (ask, at.before) {
+            (Ask::Force, None) => {
+                let Swelling { gradient, measure } = self.swelling(mean, cell, at.y, None)?;
+                let [energy, pressure, _] = mean.volumetric.at(measure);
+                add(numbers, pressure, &gradient);
+                Ok(self.volume(cell) * energy)
+            }
+            (Ask::Force, Some(before)) => self.add_mean_between(mean, cell, [before, at.y], numbers),
+            (Ask::Tangent, _) => {
+                let (force, tangent) = numbers.split_at_mut(N * D);
+                self.add_mean_tangent(mean, cell, at.y, force, tangent)
+            }
+            (Ask::Product(change), before) => {
+                self.add_mean_product(mean, cell, before, [at.y, change], numbers)?;
+                Ok(0.0)
+            }
+        }
+    }
+
     /// Adds the volumetric force of a cell and its tangent; returns its energy, as the following.
-    pub(super) fn add_mean_tangent(
+    fn add_mean_tangent(
         &self,
         mean: &Mean<D>,
         cell: usize,
@@ -155,7 +174,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     }
 
     /// Adds the discrete gradient of the volumetric energy of a cell.
-    pub(super) fn add_mean_between(
+    fn add_mean_between(
         &self,
         mean: &Mean<D>,
         cell: usize,
@@ -173,7 +192,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     }
 
     /// Adds the product of the tangent of the volumetric force.
-    pub(super) fn add_mean_product(
+    fn add_mean_product(
         &self,
         mean: &Mean<D>,
         cell: usize,

@@ -42,8 +42,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         memory: &mut [f64],
     ) -> Result<f64, Inverted> {
         let size = law.memory();
-        let none = vec![0.0; self.memory];
         // At the start of a run nothing is remembered.
+        let none = if at.past.memory.is_empty() { vec![0.0; self.memory] } else { Vec::new() };
         let virgin = Past { memory: &none, dt: at.past.dt };
         let past = if at.past.memory.is_empty() { virgin } else { at.past.part(cell, self.memory) };
         let u = self.displacements(cell, at.y);
@@ -54,7 +54,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         };
         let (force, tangent) = numbers.split_at_mut(N * D);
         let mut f = [[[0.0; LANES]; D]; N];
-        let mut blocks: Box<Blocks<D, N>> = Box::new([[[[[0.0; LANES]; D]; D]; N]; N]);
+        let is_tangent = matches!(ask, Ask::Tangent);
+        let mut blocks: Option<Box<Blocks<D, N>>> =
+            is_tangent.then(|| Box::new([[[[[0.0; LANES]; D]; D]; N]; N]));
         let mut energy = 0.0;
         let Place { points, inverse, volume } = &self.places[cell];
         for (k, points) in self.points[points.clone()].iter().enumerate() {
@@ -83,16 +85,16 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             energy += (0..points.count).map(|l| weights[l] * out.stored[l]).sum::<f64>();
             scale(&mut out.stress, &weights);
             points.add_force(&out.stress, inverse, &mut f);
-            if let Ask::Tangent = ask {
+            if let Some(blocks) = &mut blocks {
                 out.moduli.as_flattened_mut().iter_mut().for_each(|block| scale(block, &weights));
-                points.add_tangent(&out.moduli, inverse, &mut blocks);
+                points.add_tangent(&out.moduli, inverse, blocks);
             }
         }
         for (force, f) in force.iter_mut().zip(f.as_flattened()) {
             *force = sum(f);
         }
-        if let Ask::Tangent = ask {
-            spread(&blocks, tangent);
+        if let Some(blocks) = &blocks {
+            spread(blocks, tangent);
         }
         Ok(if let Ask::Product(_) = ask { 0.0 } else { energy })
     }

@@ -2,11 +2,12 @@
 //! undeformed state, small displacements, J ≤ 0.
 
 use carom_algebra::{Mat, Vector};
-use carom_solid::material::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
+use carom_solid::material::{Hencky, LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
 
 use super::random::lists;
 
 mod plane_stress;
+mod plastic;
 
 const LAMBDA: f64 = 2.0;
 const MU: f64 = 1.5;
@@ -17,6 +18,10 @@ fn neo_hookean() -> NeoHookean {
 
 fn saint_venant_kirchhoff() -> SaintVenantKirchhoff {
     SaintVenantKirchhoff { lambda: LAMBDA, mu: MU }
+}
+
+fn hencky() -> Hencky {
+    Hencky { lambda: LAMBDA, mu: MU }
 }
 
 fn linear_elastic() -> LinearElastic {
@@ -140,6 +145,9 @@ fn stress_and_tangent_are_derivatives() {
         derivatives::<1, _>(&linear_elastic(), &matrix(x, 0.2));
         derivatives::<2, _>(&linear_elastic(), &matrix(x, 0.2));
         derivatives::<3, _>(&linear_elastic(), &matrix(x, 0.2));
+        derivatives::<1, _>(&hencky(), &matrix(x, 0.2));
+        derivatives::<2, _>(&hencky(), &matrix(x, 0.2));
+        derivatives::<3, _>(&hencky(), &matrix(x, 0.2));
     });
 }
 
@@ -151,9 +159,11 @@ fn rotations_turn_the_stress_and_keep_the_energy() {
         let q = Mat([[c, -s], [s, c]]);
         objectivity::<2, _>(&neo_hookean(), &matrix(x, 0.2), &q);
         objectivity::<2, _>(&saint_venant_kirchhoff(), &matrix(x, 0.2), &q);
+        objectivity::<2, _>(&hencky(), &matrix(x, 0.2), &q);
         let q = rotation([a, b, 0.7]);
         objectivity::<3, _>(&neo_hookean(), &matrix(x, 0.2), &q);
         objectivity::<3, _>(&saint_venant_kirchhoff(), &matrix(x, 0.2), &q);
+        objectivity::<3, _>(&hencky(), &matrix(x, 0.2), &q);
     });
 }
 
@@ -164,6 +174,8 @@ fn fewer_dimensions_are_the_law_in_three_without_strain_across() {
         padded::<2, _>(&neo_hookean(), &matrix(x, 0.2));
         padded::<2, _>(&saint_venant_kirchhoff(), &matrix(x, 0.2));
         padded::<2, _>(&linear_elastic(), &matrix(x, 0.2));
+        padded::<1, _>(&hencky(), &matrix(x, 0.2));
+        padded::<2, _>(&hencky(), &matrix(x, 0.2));
     });
 }
 
@@ -176,9 +188,11 @@ fn small_motions_keep_their_digits() {
         let size = hooke.double_dot(&hooke).sqrt() + MU * h.double_dot(&h).sqrt();
         assert!(distance(&stress(&neo_hookean(), &h), &hooke) < 3e-8 * size);
         assert!(distance(&stress(&saint_venant_kirchhoff(), &h), &hooke) < 3e-8 * size);
+        assert!(distance(&stress(&hencky(), &h), &hooke) < 3e-8 * size);
         let size = MU * h.double_dot(&h);
         assert!((energy(&neo_hookean(), &h) - energy_hooke).abs() < 1e-7 * size);
         assert!((energy(&saint_venant_kirchhoff(), &h) - energy_hooke).abs() < 1e-7 * size);
+        assert!((energy(&hencky(), &h) - energy_hooke).abs() < 1e-7 * size);
     });
 }
 
@@ -195,6 +209,8 @@ fn the_undeformed_state_has_no_stress_and_no_energy() {
     at_rest::<2, _>(&saint_venant_kirchhoff());
     at_rest::<3, _>(&saint_venant_kirchhoff());
     at_rest::<2, _>(&linear_elastic());
+    at_rest::<2, _>(&hencky());
+    at_rest::<3, _>(&hencky());
 }
 
 /// cos 1e-9 − 1 = −5e-19 is lost in F, not in H.
@@ -204,6 +220,7 @@ fn a_small_rotation_is_no_strain() {
     let h = Mat([[c, -s], [s, c]]);
     assert!(distance(&stress(&neo_hookean(), &h), &Mat::ZERO) < 1e-33);
     assert!(distance(&stress(&saint_venant_kirchhoff(), &h), &Mat::ZERO) < 1e-33);
+    assert!(distance(&stress(&hencky(), &h), &Mat::ZERO) < 1e-33);
 }
 
 #[test]
@@ -211,6 +228,7 @@ fn inversion_is_an_error_that_says_j() {
     let h = Mat([[-1.5, 0.0], [0.0, 0.0]]);
     assert_eq!(neo_hookean().at(&h).err(), Some(NotPositive(-0.5)));
     assert_eq!(saint_venant_kirchhoff().at(&h).err(), Some(NotPositive(-0.5)));
+    assert_eq!(hencky().at(&h).err(), Some(NotPositive(-0.5)));
     assert!(neo_hookean().at(&Mat([[f64::NAN, 0.0], [0.0, 0.0]])).is_err());
     assert!(Material::<1>::at(&neo_hookean(), &Mat([[-1.0]])).is_err());
 }
@@ -227,4 +245,20 @@ fn neo_hookean_stretch_matches_the_scalar_formula() {
     let f = 1.3_f64;
     let expected = MU * (f - 1.0 / f) + LAMBDA * f.ln() / f;
     assert!((stress(&neo_hookean(), &Mat([[f - 1.0]])).0[0][0] - expected).abs() < 1e-15);
+}
+
+/// Uniaxial strain in closed form: P = (Λ + 2μ) ln F / F; and a large shear against the strain of
+/// its principal stretches, ln λ with λ − 1/λ = γ.
+#[test]
+fn hencky_stretch_and_shear_match_scalar_formulas() {
+    let f = 1.3_f64;
+    let expected = (LAMBDA + 2.0 * MU) * f.ln() / f;
+    assert!((stress(&hencky(), &Mat([[f - 1.0]])).0[0][0] - expected).abs() < 1e-15);
+    let gamma = 3.0_f64;
+    let strain = (0.5 * gamma).asinh();
+    let h = Mat([[0.0, gamma], [0.0, 0.0]]);
+    assert!((energy(&hencky(), &h) - 2.0 * MU * strain * strain).abs() < 1e-13);
+    // τ₁₂ = 2μ ln λ sin 2θ of the axis of b: tan 2θ = 2/γ.
+    let shear = 2.0 * MU * strain * 2.0 / (4.0 + gamma * gamma).sqrt();
+    assert!((hencky().cauchy(&hencky().at(&h).unwrap()).0[0][1] - shear).abs() < 1e-14);
 }

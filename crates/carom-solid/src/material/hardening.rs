@@ -1,0 +1,246 @@
+//! Yield stress over the equivalent plastic strain α.
+
+use std::sync::Arc;
+
+/// Yield stress σ_y(α) > 0, which does not fall.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Hardening {
+    /// σ_y = yield + modulus α.
+    Linear {
+        /// Yield stress at α = 0.
+        yield_stress: f64,
+        /// Hardening modulus, ≥ 0.
+        modulus: f64,
+    },
+    /// σ_y = yield + modulus α + rise (1 − exp(−rate α)) (E. Voce, J. Inst. Met. 74 (1948)
+    /// 537–562).
+    Voce {
+        /// Yield stress at α = 0.
+        yield_stress: f64,
+        /// Hardening modulus at large α, ≥ 0.
+        modulus: f64,
+        /// Rise of the yield stress that saturates, ≥ 0.
+        rise: f64,
+        /// Rate of its saturation, > 0.
+        rate: f64,
+    },
+    /// Straight between given points, constant beyond the last.
+    Table(Table),
+}
+
+/// Points of a yield stress that does not fall.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table(Arc<[Entry]>);
+
+/// A point of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Entry {
+    alpha: f64,
+    stress: f64,
+    /// ∫ (σ_y − σ_y(0)) dα up to the point.
+    stored: f64,
+}
+
+/// What a law needs of the yield stress at a plastic strain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Strength {
+    /// σ_y.
+    pub(super) stress: f64,
+    /// ∫ (σ_y − σ_y(0)) dα from zero: what hardening stores.
+    pub(super) stored: f64,
+}
+
+/// Plastic flow in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Flow {
+    /// Δα.
+    pub(super) strain: f64,
+    /// dσ_y/dα at the end.
+    pub(super) slope: f64,
+    /// ∫ (σ_y − σ_y(α)) dα over the step.
+    pub(super) hardening: f64,
+}
+
+impl Table {
+    /// Points [α, σ_y]: α rises from 0, σ_y > 0 does not fall. None of others.
+    pub fn new(points: &[[f64; 2]]) -> Option<Self> {
+        let starts = points.first().is_some_and(|[alpha, stress]| *alpha == 0.0 && *stress > 0.0);
+        let rises = points.windows(2).all(|pair| pair[1][0] > pair[0][0] && pair[1][1] >= pair[0][1]);
+        if !(starts && rises && points.iter().flatten().all(|x| x.is_finite())) {
+            return None;
+        }
+        let initial = points[0][1];
+        let mut entries: Vec<Entry> = Vec::with_capacity(points.len());
+        for &[alpha, stress] in points {
+            let stored = entries.last().map_or(0.0, |last| {
+                last.stored + (alpha - last.alpha) * (0.5 * (last.stress + stress) - initial)
+            });
+            entries.push(Entry { alpha, stress, stored });
+        }
+        Some(Self(entries.into()))
+    }
+
+    /// Index of the last point whose α is not larger.
+    fn segment(&self, alpha: f64) -> usize {
+        self.0.partition_point(|entry| entry.alpha <= alpha).max(1) - 1
+    }
+
+    /// Slope of the segment after a point; zero after the last.
+    fn slope(&self, segment: usize) -> f64 {
+        let start = &self.0[segment];
+        self.0.get(segment + 1).map_or(0.0, |end| (end.stress - start.stress) / (end.alpha - start.alpha))
+    }
+
+    fn at(&self, alpha: f64) -> Strength {
+        let segment = self.segment(alpha);
+        let start = &self.0[segment];
+        let beyond = alpha - start.alpha;
+        let rise = self.slope(segment) * beyond;
+        let over = start.stress - self.0[0].stress;
+        Strength { stress: start.stress + rise, stored: start.stored + beyond * (over + 0.5 * rise) }
+    }
+
+    /// [`Hardening::flow`], exact: segment by segment.
+    fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> Flow {
+        let mut segment = self.segment(alpha);
+        let mut remaining = excess;
+        let mut risen = 0.0;
+        let mut flow = Flow::default();
+        loop {
+            flow.slope = self.slope(segment);
+            let whole = remaining / (stiffness + flow.slope);
+            let room = self.0.get(segment + 1).map_or(f64::INFINITY, |end| end.alpha - alpha - flow.strain);
+            let part = whole.min(room.max(0.0));
+            flow.strain += part;
+            flow.hardening += part * (risen + 0.5 * flow.slope * part);
+            if whole <= room {
+                return flow;
+            }
+            risen += flow.slope * part;
+            remaining -= (stiffness + flow.slope) * part;
+            segment += 1;
+        }
+    }
+}
+
+impl Hardening {
+    /// σ_y(0).
+    pub fn initial(&self) -> f64 {
+        match self {
+            Self::Linear { yield_stress, .. } | Self::Voce { yield_stress, .. } => *yield_stress,
+            Self::Table(table) => table.0[0].stress,
+        }
+    }
+
+    /// The yield stress at α.
+    #[inline(always)]
+    pub(super) fn at(&self, alpha: f64) -> Strength {
+        match self {
+            Self::Linear { yield_stress, modulus } => {
+                Strength { stress: yield_stress + modulus * alpha, stored: 0.5 * modulus * alpha * alpha }
+            }
+            Self::Voce { yield_stress, modulus, rise, rate } => {
+                let saturated = -(-rate * alpha).exp_m1();
+                Strength {
+                    stress: yield_stress + modulus * alpha + rise * saturated,
+                    stored: 0.5 * modulus * alpha * alpha + rise * (alpha - saturated / rate),
+                }
+            }
+            Self::Table(table) => table.at(alpha),
+        }
+    }
+
+    /// The flow Δα > 0 from α with `excess` − `stiffness` Δα = σ_y(α + Δα) − σ_y(α), for a trial
+    /// stress that exceeds σ_y(α) by `excess`.
+    #[inline(always)]
+    pub(super) fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> Flow {
+        match self {
+            Self::Linear { modulus, .. } => {
+                let strain = excess / (stiffness + modulus);
+                Flow { strain, slope: *modulus, hardening: 0.5 * modulus * strain * strain }
+            }
+            Self::Voce { modulus, rise, rate, .. } => {
+                let left = rise * (-rate * alpha).exp();
+                // The remainder is convex and falls with Δα: Newton's iterates rise to its root.
+                let mut strain = 0.0;
+                loop {
+                    let saturated = -(-rate * strain).exp_m1();
+                    let slope = modulus + left * rate * (1.0 - saturated);
+                    let remainder = excess - (stiffness + modulus) * strain - left * saturated;
+                    let next = strain + remainder / (stiffness + slope);
+                    let rises = next > strain * (1.0 + f64::EPSILON);
+                    if !rises {
+                        let hardening = 0.5 * modulus * strain * strain + left * (strain - saturated / rate);
+                        return Flow { strain, slope, hardening };
+                    }
+                    strain = next;
+                }
+            }
+            Self::Table(table) => table.flow(alpha, excess, stiffness),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn laws() -> [Hardening; 3] {
+        let table = Table::new(&[[0.0, 2.0], [0.1, 2.5], [0.3, 2.5], [0.6, 4.0]]);
+        [
+            Hardening::Linear { yield_stress: 2.0, modulus: 3.0 },
+            Hardening::Voce { yield_stress: 2.0, modulus: 0.5, rise: 1.5, rate: 12.0 },
+            Hardening::Table(table.unwrap()),
+        ]
+    }
+
+    /// The flow fulfils its equation, and its integral is the difference of what is stored.
+    #[test]
+    fn flow_ends_on_the_yield_stress() {
+        for law in laws() {
+            for alpha in [0.0, 0.05, 0.1, 0.29, 1.0] {
+                for excess in [1e-12, 1e-3, 0.4, 3.0, 40.0] {
+                    let start = law.at(alpha);
+                    let flow = law.flow(alpha, excess, 7.0);
+                    let end = law.at(alpha + flow.strain);
+                    let remainder = excess - 7.0 * flow.strain - (end.stress - start.stress);
+                    assert!(
+                        remainder.abs() < 2e-15 * (4.0 + excess),
+                        "{law:?} {alpha} {excess} {remainder:e}"
+                    );
+                    let over = start.stress - law.initial();
+                    let stored = flow.hardening + over * flow.strain;
+                    assert!((end.stored - start.stored - stored).abs() < 1e-14 * (1.0 + end.stored));
+                }
+            }
+        }
+    }
+
+    /// Yield stress and slope are derivatives, within the segments of a table.
+    #[test]
+    fn stress_and_slope_are_derivatives() {
+        for law in laws() {
+            for alpha in [0.05, 0.2, 0.45, 0.9] {
+                let slope = |f: &dyn Fn(f64) -> f64| (f(alpha + 1e-5) - f(alpha - 1e-5)) / 2e-5;
+                let over = law.at(alpha).stress - law.initial();
+                assert!((slope(&|x| law.at(x).stored) - over).abs() < 1e-8);
+                let flow = law.flow(alpha, 1e-10, 7.0);
+                assert!((slope(&|x| law.at(x).stress) - flow.slope).abs() < 1e-6, "{law:?} {alpha}");
+            }
+        }
+    }
+
+    #[test]
+    fn tables_that_fall_are_none() {
+        for points in [
+            &[][..],
+            &[[0.1, 1.0]],
+            &[[0.0, 0.0]],
+            &[[0.0, 1.0], [0.0, 2.0]],
+            &[[0.0, 2.0], [0.1, 1.0]],
+            &[[0.0, 1.0], [0.1, f64::NAN]],
+        ] {
+            assert_eq!(Table::new(points), None, "{points:?}");
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Isotropic laws in logarithmic principal strains: with b = F A Fᵀ = Σ λₐ² nₐ ⊗ nₐ, A constant,
+//! εₐ = ln λₐ, and principal Kirchhoff stresses τₐ(ε),
+//!
+//! ```text
+//! τ = Σ τₐ nₐ ⊗ nₐ,   P = τ F⁻ᵀ,   dP = (dτ − τ Lᵀ) F⁻ᵀ,   L = dF F⁻¹
+//! dτₐₐ = Σ Dₐᵦ Lᵦᵦ,   dτₐᵦ = gₐᵦ (λᵦ² Lₐᵦ + λₐ² Lᵦₐ),   gₐᵦ = (τₐ − τᵦ)/(λₐ² − λᵦ²)
+//! ```
+//!
+//! in the principal axes (J. C. Simo, Comput. Methods Appl. Mech. Engrg. 99 (1992) 61–112). A is I,
+//! or C_p⁻¹ of a plastic law. The differences τₐ − τᵦ are 2G times those of the strains, and
+//!
+//! ```text
+//! (εₐ − εᵦ)/(λₐ² − λᵦ²) = ½ ln(1 + x)/x / λᵦ²,   x = (λₐ² − λᵦ²)/λᵦ²,
+//! ```
+//!
+//! which is exact for all eigenvalues, equal ones included. In directions in which a body does not
+//! extend, the stretches are those of A.
+//!
+//! The eigenvalues are those of b − I = H + Hᵀ + H Hᵀ + F (A − I) Fᵀ, so that small strains keep
+//! their accuracy.
+
+use carom_algebra::{Mat, Vector, principal_axes};
+
+use super::NotPositive;
+use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
+
+/// F, its inverse, and the principal axes of b.
+#[derive(Clone, Copy)]
+pub(super) struct PrincipalFrame<const D: usize> {
+    /// F⁻ᵀ.
+    pub(super) inverse_transposed: Mat<D>,
+    /// J.
+    pub(super) det_f: f64,
+    /// nₐ, one in each column.
+    pub(super) axes: Mat<D>,
+    /// λₐ²; those of the other directions last.
+    pub(super) squares: [f64; 3],
+    /// (εₐ − εᵦ)/(λₐ² − λᵦ²) within the dimensions of the body.
+    slopes: [[f64; D]; D],
+    /// εₐ.
+    pub(super) strains: [f64; 3],
+}
+
+impl<const D: usize> PrincipalFrame<D> {
+    /// The frame of H and A − I, of which `across` is the component in the directions in which the
+    /// body does not extend.
+    #[inline(always)]
+    pub(super) fn new(h: &Mat<D>, offset: Option<&Mat<D>>, across: f64) -> Result<Self, NotPositive> {
+        let det_f = 1.0 + valid_excess(h)?;
+        let inverse_transposed = (Mat::identity() + excess_cofactor(h)) * (1.0 / det_f);
+        let mut excess = *h + h.transposed() + *h * h.transposed();
+        if let Some(offset) = offset {
+            let f = Mat::identity() + *h;
+            excess += f * *offset * f.transposed();
+        }
+        let found = principal_axes(&excess);
+        let mut excesses = [across; 3];
+        excesses[..D].copy_from_slice(&found.values);
+        if let Some(least) = excesses.into_iter().find(|x| !(*x > -1.0 && x.is_finite())) {
+            return Err(NotPositive(1.0 + least));
+        }
+        let squares = excesses.map(|x| 1.0 + x);
+        let strains = excesses.map(|x| 0.5 * ln_1p(x)[0]);
+        let mut slopes = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..a {
+                let x = (excesses[a] - excesses[b]) / squares[b];
+                let quotient = if x == 0.0 { 1.0 } else { ln_1p(x)[0] / x };
+                slopes[a][b] = 0.5 * quotient / squares[b];
+                slopes[b][a] = slopes[a][b];
+            }
+        }
+        Ok(Self { inverse_transposed, det_f, axes: found.axes, squares, slopes, strains })
+    }
+
+    /// tr ε.
+    #[inline(always)]
+    pub(super) fn trace(&self) -> f64 {
+        self.strains[0] + self.strains[1] + self.strains[2]
+    }
+
+    /// The deviator of ε.
+    #[inline(always)]
+    pub(super) fn deviator(&self) -> [f64; 3] {
+        let mean = self.trace() / 3.0;
+        self.strains.map(|strain| strain - mean)
+    }
+
+    /// Σ xₐ nₐ ⊗ nₐ within the dimensions of the body.
+    #[inline(always)]
+    pub(super) fn tensor(&self, of_axes: &[f64; 3]) -> Mat<D> {
+        let mut scaled = self.axes;
+        for row in &mut scaled.0 {
+            for a in 0..D {
+                row[a] *= of_axes[a];
+            }
+        }
+        scaled * self.axes.transposed()
+    }
+}
+
+/// Stress and stiffness in a principal frame.
+pub(super) struct PrincipalStress<const D: usize> {
+    pub(super) frame: PrincipalFrame<D>,
+    /// τₐ.
+    pub(super) kirchhoff: [f64; 3],
+    /// Dₐᵦ = volumetric + shear δₐᵦ − softening Nₐ Nᵦ.
+    pub(super) volumetric: f64,
+    /// The factor of the differences of strains in those of stresses.
+    pub(super) shear: f64,
+    pub(super) softening: f64,
+    /// N, a deviator of norm one.
+    pub(super) direction: [f64; 3],
+}
+
+impl<const D: usize> PrincipalStress<D> {
+    /// Dₐᵦ.
+    #[inline(always)]
+    fn stiffness(&self, a: usize, b: usize) -> f64 {
+        let diagonal = if a == b { self.shear } else { 0.0 };
+        self.volumetric + diagonal - self.softening * self.direction[a] * self.direction[b]
+    }
+
+    /// P.
+    #[inline(always)]
+    pub(super) fn stress(&self) -> Mat<D> {
+        self.frame.tensor(&self.kirchhoff) * self.frame.inverse_transposed
+    }
+
+    /// The block K(a, b) of [`Material::tangent`](super::Material::tangent): dP a for dF = e ⊗ b
+    /// with each unit vector e.
+    #[inline(always)]
+    pub(super) fn tangent(&self, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        let PrincipalFrame { axes, squares, slopes, inverse_transposed, .. } = &self.frame;
+        let to_axes = axes.transposed() * *inverse_transposed;
+        let a = to_axes.apply(a);
+        let b = to_axes.apply(b);
+        let mut block = Mat::ZERO;
+        for i in 0..D {
+            block.0[i][i] = a[i] * (self.stiffness(i, i) - self.kirchhoff[i]) * b[i];
+            for k in (0..D).filter(|&k| k != i) {
+                let turning = self.shear * slopes[i][k];
+                block.0[i][k] = a[i] * self.stiffness(i, k) * b[k]
+                    + (turning * squares[i] - self.kirchhoff[i]) * b[i] * a[k];
+                block.0[i][i] += turning * squares[k] * b[k] * a[k];
+            }
+        }
+        *axes * block * axes.transposed()
+    }
+
+    /// dP of dF.
+    #[inline(always)]
+    pub(super) fn change(&self, df: &Mat<D>) -> Mat<D> {
+        let PrincipalFrame { axes, squares, slopes, inverse_transposed, .. } = &self.frame;
+        let l = axes.transposed() * *df * inverse_transposed.transposed() * *axes;
+        let mut change = Mat::ZERO;
+        for i in 0..D {
+            for k in 0..D {
+                change.0[i][i] += self.stiffness(i, k) * l.0[k][k];
+                if k != i {
+                    let turning = self.shear * slopes[i][k];
+                    change.0[i][k] += turning * (squares[k] * l.0[i][k] + squares[i] * l.0[k][i]);
+                }
+                change.0[i][k] -= self.kirchhoff[i] * l.0[k][i];
+            }
+        }
+        *axes * change * axes.transposed() * *inverse_transposed
+    }
+
+    /// Cauchy stress within the dimensions of the body.
+    pub(super) fn cauchy(&self) -> Mat<D> {
+        self.frame.tensor(&self.kirchhoff) * (1.0 / self.frame.det_f)
+    }
+
+    /// Cauchy normal stress in the other directions; zero in space, which has none.
+    pub(super) fn lateral(&self) -> f64 {
+        if D < 3 { self.kirchhoff[2] / self.frame.det_f } else { 0.0 }
+    }
+}
