@@ -18,6 +18,7 @@ use std::borrow::Cow;
 
 use carom_algebra::sums::dot;
 use carom_contact::{Pair, Row, Rows};
+use carom_solid::Configuration;
 use carom_time::{Stage, Weights};
 
 use crate::contact::friction::secondary_friction;
@@ -235,7 +236,7 @@ pub(crate) fn account(
     for (impulse, mean) in next.impulses.iter_mut().zip(&means.contact_forces) {
         (0..3).for_each(|i| impulse[i] += dt * mean[i]);
     }
-    book_materials(model, state, next, &means.internal, increment);
+    book_materials(model, state, next, dt);
     next.ledger.strain = strain + last.springs;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
@@ -327,20 +328,12 @@ pub(crate) fn change_of_loads(state: &State, next: &State, increment: &[f64]) ->
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()
 }
 
-/// Records what the materials dissipate in a step with these mean internal forces and increments of
-/// positions: the work of the forces, less the change of the energy that is stored.
-pub(crate) fn book_materials(
-    model: &Model,
-    before: &State,
-    next: &mut State,
-    mean: &[f64],
-    increment: &[f64],
-) {
-    for (k, part) in model.parts.iter().enumerate().filter(|(_, part)| part.memory() > 0) {
-        let forces = part.of(mean).iter().zip(part.of(increment));
-        let work: f64 = forces.map(|(force, moved)| force * moved).sum();
-        let lost = work - (next.materials.stored[k] - before.materials.stored[k]);
-        next.materials.dissipated[k] += lost;
+/// Records what the materials dissipate in a step of length `dt`.
+pub(crate) fn book_materials(model: &Model, before: &State, next: &mut State, dt: f64) {
+    let past = before.materials.past(dt);
+    let lost = model.dissipated(&Configuration { before: None, y: &next.y, past });
+    for (sum, lost) in next.materials.dissipated.iter_mut().zip(lost) {
+        *sum += lost;
         next.ledger.materials += lost;
     }
 }

@@ -1,15 +1,9 @@
 //! What the materials of bodies remember, and the energy that they store and dissipate.
 //!
 //! The memory of the state before a step stays as it is while trials of the step compute theirs, so
-//! that a rejected step leaves nothing behind. What is dissipated is the work of the internal
-//! forces that the balance has, less the change of what is stored,
-//!
-//! ```text
-//! dissipated += Δy·F̄_int − ΔU,
-//! ```
-//!
-//! for each body with memory (`ledger.rs`). The `dissipation` of the ledger remains that of the
-//! integrator.
+//! that a rejected step leaves nothing behind. What each body dissipates is the sum of what its law
+//! dissipates at every quadrature point (`ledger.rs`); the `dissipation` of the ledger remains that
+//! of the integrator.
 
 use std::sync::Arc;
 

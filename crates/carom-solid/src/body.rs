@@ -131,6 +131,10 @@ pub trait Body: Geometry {
     /// Count of numbers that the materials of a cell remember; all are zero at the start of a run.
     fn memory(&self) -> usize;
 
+    /// Energy that the material of a cell dissipates in a step to positions `at`, from what it
+    /// remembers of the step's start.
+    fn cell_dissipated(&self, cell: usize, at: &Configuration) -> f64;
+
     /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
     fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 

@@ -192,6 +192,18 @@ impl Model {
         Ok(strain)
     }
 
+    /// Energy that each body dissipates in a step to positions `at`; none if no material remembers.
+    pub(crate) fn dissipated(&self, at: &Configuration) -> Vec<f64> {
+        if !self.remembers() {
+            return Vec::new();
+        }
+        let of_part = |(part, at): (&BodyInstance, Configuration)| -> f64 {
+            let cells = if part.memory() > 0 { part.body.mesh().cell_count() } else { 0 };
+            (0..cells).map(|cell| part.body.cell_dissipated(cell, &at)).sum()
+        };
+        self.configurations(at).map(of_part).collect()
+    }
+
     /// ∂f_int/∂y · `change`, overwriting `product`; with positions before, that of the discrete
     /// gradient from there.
     ///

@@ -150,12 +150,7 @@ impl Explicit {
                 ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
         }
-        if model.remembers() {
-            let forces = start.f_internal.iter().zip(&next.f_internal);
-            let mean: Vec<f64> = forces.map(|(before, now)| 0.5 * (before + now)).collect();
-            let increment: Vec<f64> = start.half_step.velocity.iter().map(|v| dt * v).collect();
-            book_materials(model, start, next, &mean, &increment);
-        }
+        book_materials(model, start, next, dt);
         let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
         if in_contact(start) || in_contact(next) {
             let velocity = &start.half_step.velocity;

@@ -142,12 +142,7 @@ impl Stepper for Impulsive {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
-        if model.remembers() {
-            let weights = [equations.stage.weights.internal, equations.stage.before.internal];
-            let forces = solved.forces.internal.iter().zip(&state.f_internal);
-            let mean: Vec<f64> = forces.map(|(now, old)| weights[0] * now + weights[1] * old).collect();
-            book_materials(model, state, &mut next, &mean, &solved.at.increment);
-        }
+        book_materials(model, state, &mut next, dt);
         let carried = self.scheme.alpha().map_or(0.0, |alpha| alpha.carried());
         next.ledger.unbooked -= carried * change_of_loads(state, &next, &solved.at.increment);
         impulses.record(dt, &mut next, &mut pairings);

@@ -87,6 +87,9 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::plastic_strain`].
     fn plastic_strain_of(&self, memory: &[f64]) -> f64;
 
+    /// [`Material::dissipated`] of a step to H.
+    fn dissipated_at(&self, h: &Mat<D>, past: &Past) -> f64;
+
     /// A step of a law with memory.
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive>;
 
@@ -184,6 +187,10 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
 
     fn plastic_strain_of(&self, memory: &[f64]) -> f64 {
         self.plastic_strain(memory)
+    }
+
+    fn dissipated_at(&self, h: &Mat<D>, past: &Past) -> f64 {
+        self.after(h, past).map_or(0.0, |point| self.dissipated(&point))
     }
 
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {

@@ -126,6 +126,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         Ok(())
     }
 
+    fn cell_dissipated(&self, cell: usize, at: &Configuration) -> f64 {
+        self.dissipated(cell, at)
+    }
+
     fn memory(&self) -> usize {
         self.memory
     }

@@ -7,7 +7,7 @@ use super::integrals::{scale, spread};
 use super::{Place, Solid};
 use crate::body::{Ask, Configuration, Inverted};
 use crate::material::{Evolution, Evolved, NotPositive, Past, Pointwise, Wanted};
-use crate::points::{Blocks, LANES, sum};
+use crate::points::{Blocks, LANES, get, sum};
 use crate::shape::Shape;
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
@@ -97,6 +97,29 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             spread(blocks, tangent);
         }
         Ok(if let Ask::Product(_) = ask { 0.0 } else { energy })
+    }
+
+    /// Energy that a cell dissipates in a step from what it remembers of its start.
+    pub(super) fn dissipated(&self, cell: usize, at: &Configuration) -> f64 {
+        let law = &self.medium(cell).law;
+        let size = law.memory();
+        if size == 0 {
+            return 0.0;
+        }
+        let none = if at.past.memory.is_empty() { vec![0.0; self.memory] } else { Vec::new() };
+        let virgin = Past { memory: &none, dt: at.past.dt };
+        let past = if at.past.memory.is_empty() { virgin } else { at.past.part(cell, self.memory) };
+        let u = self.displacements(cell, at.y);
+        let Place { points, inverse, volume } = &self.places[cell];
+        let mut sum = 0.0;
+        for (k, points) in self.points[points.clone()].iter().enumerate() {
+            let h = points.gradient(&u, inverse);
+            for l in 0..points.count {
+                let dissipated = law.dissipated_at(&get(&h, l), &past.part(k * LANES + l, size));
+                sum += volume * points.weights[l] * dissipated;
+            }
+        }
+        sum
     }
 
     /// Vectors at the nodes of a cell from those at all nodes.
