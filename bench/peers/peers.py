@@ -41,6 +41,11 @@ def peer(python, script, *arguments, limit=None):
 def install(*more):
     """Installs the peers, and packages of PyPI in the environment of Kratos."""
     subprocess.run(["apt-get", "install", "-yq", "--no-install-recommends", "python3-getfem"], check=True)
+    install_python(*more)
+
+
+def install_python(*more):
+    """Installs Kratos and packages of PyPI in its environment."""
     subprocess.run([sys.executable, "-m", "venv", VENV], check=True)
     subprocess.run([VENV / "bin" / "pip", "install", "-q", "--disable-pip-version-check", *KRATOS, *more], check=True)
 
