@@ -25,8 +25,8 @@ from peers import KRATOS, ROOT, VENV, install_python, missing, peer
 from pressure_decks import DECKS, lines, write
 
 PLACE = ROOT / "target" / "peers-pressure"
-# Largest error of the resultant; it contains that of its integration from the values at the nodes. An
-# overlap of the meshes changes the resultant.
+# Largest error of the resultant; it contains that of its integration from the values at the nodes.
+# An overlap of the meshes changes the resultant.
 BALANCE = 0.03
 SECONDARIES = ("upper.bottom", "lower.top")
 

@@ -150,8 +150,7 @@ impl Recorded<'_> {
             columns.vector(&format!("{name}.velocity"), &label.velocity, what);
         }
         if !self.yielding.is_empty() {
-            let what = "work of plastic flow on the bodies that is dissipated, cumulative: ≤ 0 but for the \
-                        error of mean forces";
+            let what = "work of plastic flow on the bodies that is dissipated, cumulative, ≤ 0";
             columns.add("plastic_work", &label.energy, what);
         }
         for name in &self.yielding {

@@ -282,6 +282,7 @@ fn pressed(directory: &Path) {
                 rubbing: [0.0; 3],
                 traction: 0.0,
                 slip: 0.0,
+                ..ContactRow::default()
             };
             writer.contact(&row).unwrap();
         }

@@ -158,7 +158,7 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
 /// The material of a body remembers other things there.
 fn remembered(old: &Case, state: &State, model: &Model) -> Result<Vec<f64>, Vec<Problem>> {
     let memory = state.materials.past(0.0).memory;
-    if !model.parts.iter().any(|part| part.memory() > 0) || memory.is_empty() {
+    if memory.is_empty() {
         return Ok(Vec::new());
     }
     let whole = build::build(old, &build::Materials::default())?;

@@ -152,7 +152,7 @@ fn levels_of_reference(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<L
     let is_one_mesh = file.fine.mesh == [1.0];
     let factors: &[f64] = match &file.fine.mesh[..] {
         [] if case.dimension > 1 => &[1.0, 2.0],
-        [] | [_] => &[1.0, 2.0, 4.0],
+        [] | [1.0] => &[1.0, 2.0, 4.0],
         given => given,
     };
     let finest = factors[factors.len() - 1];
@@ -180,16 +180,19 @@ const BATHE: &str = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
 pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Draft>> {
     let given: Vec<_> = file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect();
     let placed = |scheme: &str| (scheme.to_owned(), "fine".to_owned());
-    let own = given.iter().find(|(set, _)| set.starts_with("time.scheme"));
-    let own = own.cloned().unwrap_or_else(|| placed(CHUNG_HULBERT));
-    let second = placed(if own.0.contains("\"bathe\"") { CHUNG_HULBERT } else { BATHE });
+    let is_scheme = |(set, _): &&(String, String)| set.starts_with("time.scheme");
+    let own: Vec<_> = given.iter().filter(is_scheme).cloned().collect();
+    let own = if own.is_empty() { vec![placed(CHUNG_HULBERT)] } else { own };
+    let is_bathe = own.iter().any(|(set, _)| set.contains("bathe"));
+    let second = vec![placed(if is_bathe { CHUNG_HULBERT } else { BATHE })];
     let levels = levels_of_reference(file, case, step)?;
     let finest = levels.last()?;
-    let draft = |name: String, level: &Level, scheme: &(String, String), check: bool| {
+    let draft = |name: String, level: &Level, scheme: &[(String, String)], check: bool| {
         let others = given.iter().filter(|(set, _)| !set.starts_with("time.scheme")).cloned();
         let mut sets = with_common(file, others.collect());
-        sets.retain(|(set, _)| !set.starts_with("time.scheme"));
-        sets.push(scheme.clone());
+        let is_whole = scheme.iter().any(|(set, _)| set.starts_with("time.scheme="));
+        sets.retain(|(set, _)| !(is_whole && set.starts_with("time.scheme")));
+        sets.extend_from_slice(scheme);
         sets.push((format!("time.step={:?}", case.time.end / level.steps), "fine".to_owned()));
         if level.mesh != 1.0 {
             sets.push((format!("refine={:?}", case.refine * level.mesh), "fine.mesh".to_owned()));

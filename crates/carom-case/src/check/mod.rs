@@ -339,7 +339,7 @@ impl<'a> Check<'a> {
             Element::Q4 | Element::Hex8 => ", or volumetric = \"mean\"".to_owned(),
             _ => return,
         };
-        let Some(spec) = self.draft.body.iter().flatten().nth(i) else { return };
+        let Some(spec) = self.draft.body.get(i).and_then(Option::as_ref) else { return };
         let names = spec.material_names();
         let flows =
             |material: &&MaterialSpec| material.plastic.is_some() && names.contains(&material.name.as_str());

@@ -295,13 +295,6 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
         &["method = \"mortar\" cannot be used with scheme `moreau-jean`"],
     ),
     (
-        &[
-            "contact.strike.method=mortar",
-            "contact.strike.primary={ plane = { point = [0, 0], normal = [0, 1] } }",
-        ],
-        &["method = \"mortar\" cannot be used with a rigid obstacle", "node-to-segment"],
-    ),
-    (
         &["contact.strike.method=mortar", "time.fallback=velocity"],
         &["fallback = \"velocity\" cannot be used with method = \"mortar\""],
     ),

@@ -5,6 +5,8 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use carom_contact::{InsideItself, Rows, Side};
 use serde::{Deserialize, Serialize};
 
@@ -191,6 +193,7 @@ impl Penetration {
                 let gap = contact.kinematics.signed_distance(node, &state.y);
                 deepest.add(-gap.unwrap_or(0.0), true);
             }
+            below_obstacle(contact, &state.y).for_each(|(_, depth)| deepest.add(depth, false));
         }
         (deepest, beyond)
     }
@@ -394,12 +397,24 @@ impl Penetration {
             let depth =
                 |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
             found.extend(secondary.map(depth));
+            found.extend(below_obstacle(contact, y).map(|(node, depth)| (k, node, depth)));
         }
         found.retain(|(.., depth)| *depth > limit);
         found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
         found.dedup_by_key(|(contact, ..)| *contact);
         found
     }
+}
+
+/// The depths of nodes in a rigid obstacle that only their mean holds, less those that they keep.
+fn below_obstacle<'a>(contact: &'a Contact, y: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let kept: BTreeMap<usize, f64> = contact.kinematics.kept_at_nodes().into_iter().collect();
+    let of_field = contact.facets.iter().filter(|_| contact.kinematics.is_of_field(0));
+    let nodes: BTreeSet<usize> = of_field.flat_map(|(_, facets)| facets.iter().flatten().copied()).collect();
+    nodes.into_iter().filter_map(move |node| {
+        let distance = contact.kinematics.distance_to_obstacle(node, y)?;
+        Some((node, -distance - kept.get(&node).copied().unwrap_or(0.0)))
+    })
 }
 
 /// Penetration at a state.

@@ -37,6 +37,7 @@ const GROUPS: [Group; 7] = [
             "energy_drift",
             "energy_error",
             "dissipated_integrator",
+            "plastic_lost",
             "dissipated_contact",
         ],
     },

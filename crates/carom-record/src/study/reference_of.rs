@@ -10,7 +10,7 @@ use super::manifest::StudyManifest;
 use super::reference::{Level, Reference};
 use super::trajectory::Trajectory;
 use crate::metrics;
-use crate::{RecordError, Status};
+use crate::{Reason, RecordError, Status};
 
 /// Impact law of the contact nodes, as a part of the description of a reference: while contact
 /// nodes have mass, the law belongs to the mathematical problem.
@@ -60,6 +60,18 @@ impl StudyManifest {
         found.split_off(found.len().saturating_sub(3))
     }
 
+    /// The time to average over, if it is given; or else why there is none.
+    fn window(&self, none: &str) -> Result<f64, Reason> {
+        let end = self.arms.first().map_or(f64::INFINITY, |arm| arm.facts.end);
+        let window = self.window.ok_or_else(|| Reason::from(none.to_owned()))?;
+        if window < 0.5 * end {
+            return Ok(window);
+        }
+        let why =
+            format!("the `window` to average over, {window}, is not shorter than half of the runs, {end}");
+        Err(why.into())
+    }
+
     /// The reference that arms are compared with.
     ///
     /// # Errors
@@ -68,10 +80,10 @@ impl StudyManifest {
         if self.reference.as_deref() == Some("exact") {
             let Some(facts) = self.arms.first().map(|arm| &arm.facts) else { return Ok(None) };
             let exact = Reference::of_formulas(&facts.exact, facts.end, 8000);
-            let window = self.window.ok_or_else(|| "[exact] needs `window`, the time to average over".into());
+            let window = self.window("[exact] needs `window`, the time to average over");
             return Ok(exact.map(|exact| exact.grouped(&self.bodies_of_probes(), &window)));
         }
-        let mut window = self.window.ok_or_else(|| "the reference has no contact".into());
+        let mut window = self.window("the reference has no contact");
         let arms = self.reference_arms();
         let mut levels = Vec::new();
         let mut averaged = Vec::new();
@@ -84,7 +96,9 @@ impl StudyManifest {
                 if let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) {
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
-                        window = window.or_else(|_| metrics::window(&run.history));
+                        if self.window.is_none() {
+                            window = metrics::window(&run.history);
+                        }
                     }
                     members.push(Trajectory::of(&run, &metrics::of_run_beside(&run, &self.overlays)));
                     if !phases.contains(&phase) {

@@ -98,8 +98,8 @@ impl Surfaces {
         pressures
     }
 
-    /// The pressures per area of the reference surface of contacts with a pressure field, by node of
-    /// their secondary sides.
+    /// The pressures per area of the reference surface of contacts with a pressure field, by node
+    /// of their secondary sides.
     pub(super) fn nominal_pressures(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
         let mut pressures = BTreeMap::new();
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {

@@ -67,6 +67,7 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
     }
     let pressures = surfaces.pressures(model, state);
     let nominal = surfaces.nominal_pressures(model, state);
+    let has_field = model.contacts.iter().any(|contact| contact.kinematics.is_of_field(0));
     let pressure_at = |node: usize| pressures.get(&node).copied().unwrap_or(0.0);
     let in_space = model.dimension == 3;
     // Of each contact with friction in space: friction on the secondary side.
@@ -107,7 +108,7 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
                 multiplier: size * pair.lambda,
                 pressure: mean(&shares, &pressure_at),
                 nominal: nominal.get(&node).copied().unwrap_or_default(),
-                center: std::array::from_fn(|i| coordinate(&center, i)),
+                center: std::array::from_fn(|i| if has_field { coordinate(&center, i) } else { 0.0 }),
                 normal,
                 friction: match (&contact.friction, pair.tangential.friction_state) {
                     _ if pair.node >= contact.kinematics.rubbing() => "none",

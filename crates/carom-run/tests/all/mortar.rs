@@ -301,8 +301,8 @@ fn energy_and_momenta_are_conserved() {
     assert!(lost >= -1e-10 && lost < 0.2 * energy, "{lost} of {energy}");
 }
 
-/// The largest pressure of a cylinder on a rigid plane, per reference length, is Hertz's, p₀ = 0.025
-/// for a = 0.05 and facets of 0.005.
+/// The largest pressure of a cylinder on a rigid plane, per reference length, is Hertz's, p₀ =
+/// 0.025 for a = 0.05 and facets of 0.005.
 #[test]
 fn the_pressure_on_a_rigid_plane_is_that_of_hertz() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/static/hertz-plane.toml");

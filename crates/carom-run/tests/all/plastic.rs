@@ -65,31 +65,31 @@ fn energy_and_momentum_leave_nothing_to_the_integrator() {
     }
 }
 
-/// What every scheme books approaches the plastic work of the law. Of one-step schemes the error of
-/// their mean forces is of first order.
+/// The plastic work approaches one value with every scheme; that of backward Euler, of first order,
+/// most slowly.
 #[test]
 fn every_scheme_books_the_work_of_flow() {
-    let reference = finish(simulation(&flight("{ kind = \"energy-momentum\" }", 2e-3), &[""; 0]));
+    let lumped = ["body.block.mass=\"lumped\""];
+    let reference = finish(simulation(&flight("{ kind = \"energy-momentum\" }", 1e-3), &lumped));
     let expected = reference.state().ledger.materials;
     for (scheme, _) in schemes(false).filter(|(scheme, _)| !scheme.contains("static")) {
         let errors = [8e-3, 4e-3].map(|step| {
-            let run = finish(simulation(&flight(&scheme, step), &["body.block.mass=\"lumped\""]));
+            let run = finish(simulation(&flight(&scheme, step), &lumped));
             (run.state().ledger.materials / expected - 1.0).abs()
         });
         assert!(errors[1] < 0.15 && errors[1] < 0.7 * errors[0] + 5e-3, "{scheme}: {errors:?}");
     }
 }
 
-/// Order in time of a motion that yields, from steps of 4, 2 and 1: flow begins at other instants
-/// of a step, and yet the error falls with the square.
+/// Order in time of a motion that yields, from steps that resolve the beginning of flow.
 #[test]
 fn yielding_keeps_the_order_in_time() {
     for scheme in ["{ kind = \"energy-momentum\" }", "{ kind = \"chung-hulbert\", rho_inf = 0.8 }"] {
         let at = |step: f64| finish(simulation(&flight(scheme, step), &[""; 0])).state().y.clone();
-        let [coarse, middle, fine] = [8e-3, 4e-3, 2e-3].map(at);
+        let [coarse, middle, fine] = [2e-3, 1e-3, 5e-4].map(at);
         let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         let order = (apart(&coarse, &middle) / apart(&middle, &fine)).log2();
-        assert!(order > 1.6, "{scheme}: {order}");
+        assert!(order > 1.8, "{scheme}: {order}");
     }
 }
 

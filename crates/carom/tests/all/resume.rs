@@ -291,6 +291,7 @@ fn sensitivity(name: &str) -> Sensitivity {
             | "energy_error"
             | "energy_lost_impact"
             | "dissipated_integrator"
+            | "plastic_lost"
             | "dissipated_contact",
         )
         | (_, "peak_mean")
