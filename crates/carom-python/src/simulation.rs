@@ -24,13 +24,6 @@ struct Inner {
     rows: Rows,
 }
 
-impl Inner {
-    /// Number of axes of the contact rows, as in `contact.csv`.
-    fn axes(&self) -> usize {
-        self.library.model().dimension.max(2)
-    }
-}
-
 /// A simulation with the rows that a run would record.
 #[pyclass(frozen, module = "carom._carom")]
 pub(crate) struct Simulation {
@@ -172,14 +165,14 @@ impl Simulation {
     /// The active contact nodes, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inner = self.inner()?;
-        tables::contact(py, &inner.rows.contact(&inner.library), inner.axes())
+        tables::contact(py, &inner.rows.contact(&inner.library), self.case.facts().contact_columns())
     }
 
     /// Units of these columns.
     fn contact_units(&self) -> PyResult<HashMap<&'static str, String>> {
         let inner = self.inner()?;
         let history = History::new(inner.rows.columns().to_vec(), Vec::new());
-        Ok(tables::contact_units(&history, inner.axes()))
+        Ok(tables::contact_units(&history, self.case.facts().contact_columns()))
     }
 
     /// The state as bytes, with the names of the functions and the case.

@@ -39,6 +39,7 @@ pub struct Facts {
 
 /// Facts of a contact.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(clippy::struct_excessive_bools)] // Each is a fact of the case, independent of the others.
 pub struct ContactFacts {
     /// Name of the contact; it is also in the names of the columns of a moving obstacle.
     pub name: String,

@@ -1,4 +1,4 @@
-//! What the secondary side of a mortar contact faces: a side of a body, or a rigid obstacle.
+//! The opposite of the secondary side of a mortar contact: a side of a body, or a rigid obstacle.
 
 use carom_algebra::Vector;
 
@@ -12,11 +12,11 @@ use crate::kinematics::surface::Surface;
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;
 
-/// What the secondary side faces.
+/// A side or an obstacle that the secondary side faces.
 #[derive(Debug)]
 pub(super) enum Opposite {
     Side(Primary),
-    Obstacle(NodeToObstacle),
+    Obstacle(Box<NodeToObstacle>),
 }
 
 /// The primary side.
@@ -182,19 +182,19 @@ impl PointGap {
     }
 
     /// Calls a function with the gradients of the gap by the point and by each node opposite.
-    pub(super) fn gradient(&self, of: impl FnMut((usize, Vector<2>))) {
+    pub(super) fn gradient(&self, mut of: impl FnMut(usize, Vector<2>)) {
         match self {
-            Self::Facet(gap, nodes) => gap.gradient(*nodes).enumerate().for_each(of),
-            Self::Obstacle(gap) => gap.gradient().map(flat).enumerate().for_each(of),
+            Self::Facet(gap, nodes) => gap.gradient(*nodes).enumerate().for_each(|(p, v)| of(p, v)),
+            Self::Obstacle(gap) => gap.gradient().map(flat).enumerate().for_each(|(p, v)| of(p, v)),
         }
     }
 
     /// Calls a function with the parts of the row of the slip of the point and of each node
     /// opposite.
-    pub(super) fn slip(&self, of: impl FnMut((usize, Vector<2>))) {
+    pub(super) fn slip(&self, mut of: impl FnMut(usize, Vector<2>)) {
         match self {
-            Self::Facet(gap, nodes) => gap.slip(*nodes).enumerate().for_each(of),
-            Self::Obstacle(gap) => gap.row(gap.tangent()).map(flat).enumerate().for_each(of),
+            Self::Facet(gap, nodes) => gap.slip(*nodes).enumerate().for_each(|(p, v)| of(p, v)),
+            Self::Obstacle(gap) => gap.row(gap.tangent()).map(flat).enumerate().for_each(|(p, v)| of(p, v)),
         }
     }
 

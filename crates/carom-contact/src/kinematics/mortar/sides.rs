@@ -55,7 +55,7 @@ impl Mortar {
     /// Contact of a secondary side with the obstacle of its nodes; `reference`: reference
     /// positions, flat over all nodes.
     pub fn with_obstacle(secondary: Surface, nodes: NodeToObstacle, reference: &[f64]) -> Self {
-        Self::between(secondary, Opposite::Obstacle(nodes.clone()), reference, Box::new(nodes))
+        Self::between(secondary, Opposite::Obstacle(Box::new(nodes.clone())), reference, Box::new(nodes))
     }
 
     fn between(

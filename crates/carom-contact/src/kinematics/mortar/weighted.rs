@@ -71,9 +71,9 @@ impl Stencil {
         mortar: &Mortar,
         sample: &'a Sample,
         sum: &'a mut [Vector<2>],
-    ) -> impl FnMut((usize, Vector<2>)) + 'a {
+    ) -> impl FnMut(usize, Vector<2>) + 'a {
         let placed = self.place(mortar, sample);
-        move |(p, slope)| {
+        move |p, slope| {
             placed.each(p, sample, |(place, weight)| sum[place] += slope * (sample.share * weight));
         }
     }
