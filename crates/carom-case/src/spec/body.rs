@@ -91,7 +91,7 @@ struct PlasticKeys {
     /// Hardening modulus dσ_y/dα; 0.0 is perfect plasticity. Default: 0.
     #[key(unit = "mass/(length·time²)", example = "1000.0")]
     hardening: Option<f64>,
-    /// Rise of the yield stress that saturates (E. Voce), added to the above.
+    /// Rise of the yield stress that saturates (Voce), added to the above.
     #[key(example = "{ rise = 265.0, rate = 16.93 }")]
     voce: Option<VoceKeys>,
     /// Points [α, yield stress] in place of the other keys, from α = 0 on: straight between them,
