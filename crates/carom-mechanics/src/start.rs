@@ -34,7 +34,7 @@ pub struct InitialState {
     pub v: Vec<f64>,
     /// Pairs of each contact.
     pub pairs: Vec<Vec<Pair>>,
-    /// What the materials of all bodies remember; empty if nothing.
+    /// Memory of the materials of all bodies; empty if there is none.
     pub memory: Vec<f64>,
 }
 

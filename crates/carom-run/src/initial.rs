@@ -152,7 +152,7 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
     Ok(before)
 }
 
-/// What the materials of a model remember of a run: that of each body's own materials there.
+/// Memory of the materials of a model, as the run left it: for each body, of its materials there.
 ///
 /// # Errors
 /// The material of a body remembers other things there.

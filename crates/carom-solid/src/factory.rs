@@ -31,7 +31,7 @@ pub struct LawAtPoints<const D: usize>(Box<dyn Pointwise<D>>);
 
 /// A law of which bodies with mean dilatation can be made.
 pub trait VolumeAveraged {
-    /// Its parts in plane strain.
+    /// Parts of the law in plane strain.
     fn averaged_in_plane(&self) -> AveragedAtPoints<2>;
 
     /// Its parts in space.

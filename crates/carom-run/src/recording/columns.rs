@@ -40,7 +40,7 @@ pub(super) fn center_weights(model: &Model) -> Vec<f64> {
     weights
 }
 
-/// What the rows of a run need beside its state.
+/// Counts and weights that the rows of a run need beside its state.
 pub(super) struct Recorded {
     /// Weights of a body's nodes in its centre of mass.
     pub(super) weights: Vec<f64>,

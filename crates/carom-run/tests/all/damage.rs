@@ -156,21 +156,26 @@ fn pulled(scheme: &str, mass: &str, step: f64) -> String {
     bar(mass, &format!("{load}[time]\nend = 3.0\nstep = {step}\nscheme = {scheme}\nenergy_guard = false\n"))
 }
 
-/// With the discrete gradient of the incremental potential the energy that is not stored is
-/// dissipated by the material; what is left for the integrator is the error of the quadrature of
-/// the gradient in steps in which damage begins, where the potential has no second derivative.
+/// What is not stored is dissipated by the material; nothing is left for the integrator but the
+/// error of the stress in the middle of a step of this law, which is linear but for damage. It
+/// falls faster than the step; the square is that of steps in which damage does not begin.
 #[test]
 fn energy_and_momentum_book_what_the_material_dissipates() {
-    let mut run = start(&pulled("{ kind = \"energy-momentum\" }", "consistent", 0.02));
-    let mut before = 0.0;
-    while !run.finished() {
-        run.advance(&mut GridReport::default()).unwrap();
-        let ledger = &run.state().ledger;
-        assert!(ledger.materials > before - 1e-15);
-        before = ledger.materials;
-        assert!(ledger.dissipation().abs() < 1e-6, "{}", ledger.dissipation());
-    }
-    assert!(before > 1e-3, "{before}");
+    let left = [0.02, 0.01].map(|step| {
+        let mut run = start(&pulled("{ kind = \"energy-momentum\" }", "consistent", step));
+        let mut before = 0.0;
+        let mut left: f64 = 0.0;
+        while !run.finished() {
+            run.advance(&mut GridReport::default()).unwrap();
+            let ledger = &run.state().ledger;
+            assert!(ledger.materials > before - 1e-15);
+            before = ledger.materials;
+            left = left.max(ledger.dissipation().abs());
+        }
+        assert!(before > 1e-3, "{before}");
+        left
+    });
+    assert!(left[0] < 1e-6 && left[1] < 0.5 * left[0], "{left:?}");
 }
 
 /// Implicit and explicit runs approach the same motion, damage and dissipation. Waves that meet at

@@ -144,7 +144,7 @@ fn bisected_steps_and_threads_have_the_same_bits() {
     assert!(whole.state().ledger.materials > 0.01);
 }
 
-/// What is left of a state with fewer bodies remembers as before: the next steps are the same.
+/// A state that is reduced to fewer bodies keeps their memory: the next steps are the same.
 #[test]
 fn a_part_of_a_state_remembers() {
     let second = |name: &str, left: f64| {
