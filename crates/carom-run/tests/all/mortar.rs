@@ -268,7 +268,7 @@ fn the_pressure_stays_bounded_while_the_cover_slides() {
             let found = rows.contact(&sim);
             let force = sim.state().contact_forces[0][1].abs();
             let largest = found.iter().map(|row| row.pressure).fold(0.0, f64::max);
-            // The mean pressure is the force over the width of 1. A corner adds a quarter of the force.
+            // The mean pressure is the force over the width of 1; a corner adds a quarter of it.
             let of_field = found.iter().map(|row| row.nominal).fold(0.0, f64::max);
             assert!(of_field < 3.5 * force, "{of_field} of a mean of {force} at {}", sim.state().time);
             assert!(largest < 5.0 * force, "{largest} of a mean of {force} at {}", sim.state().time);
