@@ -75,6 +75,8 @@ pub struct Saddle {
     /// Rows of G that depend linearly on earlier ones.
     dependent: Vec<usize>,
     nonzeros: Vec<usize>,
+    /// Absolute values on the diagonal of S before rows add to it.
+    diagonal: Vec<f64>,
     room: Room,
     /// Factor of the whole saddle-point matrix if S is not positive definite.
     indefinite: Option<Whole>,
@@ -107,15 +109,17 @@ impl Saddle {
 
     /// Adds κ gᵀg to S for every row g of G, where κ is `share` times the stiffness of S along g,
     /// and subtracts κ C g from its direction. The solution does not change; an S that is positive
-    /// definite only where G x = 0 becomes so everywhere.
+    /// definite only where G x = 0 becomes so everywhere. Rows that share entries of x do not add
+    /// to each other's κ, which would grow from row to row.
     pub fn augment(&mut self, share: f64) {
         let n = self.size.max(1);
+        self.diagonal.clear();
+        self.diagonal.extend(self.stiffness.iter().step_by(n + 1).map(|stiffness| stiffness.abs()));
         for (r, (row, penalty)) in self.rows.chunks_exact(n).zip(&mut self.penalties).enumerate() {
             self.nonzeros.clear();
             self.nonzeros.extend((0..n).filter(|&j| row[j] != 0.0));
             let square: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j]).sum();
-            let along: f64 =
-                self.nonzeros.iter().map(|&j| row[j] * row[j] * self.stiffness[j * n + j].abs()).sum();
+            let along: f64 = self.nonzeros.iter().map(|&j| row[j] * row[j] * self.diagonal[j]).sum();
             if square == 0.0 {
                 continue;
             }

@@ -51,6 +51,45 @@ fn meets_both_lines_of_the_system() {
     }
 }
 
+/// Each row of a chain shares entries with the next one. What a row adds to S is in proportion to S,
+/// not to what the rows before it have added: there it grows from row to row, S has no factor, and
+/// multipliers have no correct digits.
+#[test]
+fn rows_of_a_chain_are_augmented_alike() {
+    let m = 60;
+    let n = m + 2;
+    let entry = |i: usize, j: usize| match i.abs_diff(j) {
+        0 => 2.0,
+        1 => -1.0,
+        _ => 0.0,
+    };
+    let stiffness: Vec<f64> = (0..n * n).map(|k| entry(k % n, k / n)).collect();
+    let row = |r: usize, j: usize| match j.wrapping_sub(r) {
+        0 | 2 => 0.25,
+        1 => 0.5,
+        _ => 0.0,
+    };
+    let mut saddle = Saddle::default();
+    saddle.begin(&stiffness, n, m);
+    for r in 0..m {
+        (r..r + 3).for_each(|j| saddle.add_row(r, j, row(r, j)));
+    }
+    saddle.augment(10.0);
+    assert!(saddle.factor());
+    let b: Vec<f64> = (0..n).map(|i| (1.3 * i as f64).sin()).collect();
+    let mut x = b.clone();
+    let mut multipliers = vec![0.0; m];
+    saddle.solve(&mut x, &mut multipliers);
+    for i in 0..n {
+        let upper: f64 = (0..n).map(|j| entry(i, j) * x[j]).sum();
+        let lower: f64 = (0..m).map(|r| row(r, i) * multipliers[r]).sum();
+        assert!((upper + lower - b[i]).abs() < 1e-10);
+    }
+    for r in 0..m {
+        assert!((0..n).map(|j| row(r, j) * x[j]).sum::<f64>().abs() < 1e-12);
+    }
+}
+
 /// A row at an angle to two others that is round-off is left out: the solution is that without it.
 /// At a larger angle it counts, also beside a row that is a million times longer.
 #[test]
