@@ -58,7 +58,8 @@ pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback,
     ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
     MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overhang, Overlap, OverlaySpec,
-    Persistency, Plane, PlasticSpec, Preset, PrimarySpec, ProbeSpec, Quantity, RefineSpec, SKIN, SchemeSpec,
-    SupportSpec, TangentRule, TieMethod, TieSpec, TimeSpec, Units, Velocities, Volumetric, load_variables,
+    Persistency, Plane, PlasticSpec, Preset, PrimarySpec, ProbeSpec, Quadrature, Quantity, RefineSpec, SKIN,
+    SchemeSpec, SupportSpec, TangentRule, TieMethod, TieSpec, TimeSpec, Units, Velocities, Volumetric,
+    load_variables,
 };
 pub use surface_file::SurfaceSpec;

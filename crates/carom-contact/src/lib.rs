@@ -29,8 +29,8 @@ pub use interface::{
 pub use kinematics::{
     BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Depth, Detection, EdgeToEdge,
     Faceted, Joined, Kinematics, Mortar, NodalPressure, NodeToFacet, NodeToObstacle, NodeToPatch,
-    NodesWithDepth, Obstacle, OnFacet, OneWay, Outward, Passed, Polyline, PolylineError, Side, SpaceHit,
-    Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet, WithEdges, WithTips,
+    NodesWithDepth, Obstacle, OnFacet, OneWay, Outward, Passed, Polyline, PolylineError, Quadrature, Side,
+    SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet, WithEdges, WithTips,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -6,7 +6,7 @@ use carom_solid::Element;
 use super::super::spec::SKIN;
 use super::super::{
     ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Method, ObstacleMotion, Overlap,
-    Persistency, PrimarySpec,
+    Persistency, PrimarySpec, Quadrature,
 };
 use super::{Check, Node};
 
@@ -121,6 +121,12 @@ impl Check<'_> {
     /// paper.
     fn mortar(&mut self, contact: &ContactSpec) {
         if contact.method != Method::Mortar {
+            if contact.quadrature != Quadrature::Segments {
+                let why = "gaps of single nodes are not integrated";
+                let hint = "use method = \"mortar\", or leave `quadrature` out";
+                let what = "quadrature cannot be given with this method";
+                self.add_unique(contact.path("quadrature"), what, why, hint);
+            }
             return;
         }
         let draft = self.draft;

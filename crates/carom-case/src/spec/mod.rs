@@ -18,7 +18,7 @@ pub(crate) use body::{MaterialKeys, materials};
 pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{
     ActiveSetRule, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec,
-    Method, Overlap, Persistency,
+    Method, Overlap, Persistency, Quadrature,
 };
 pub use formula::FormulaSpec;
 pub(crate) use load::{LoadKeys, SupportKeys, loads, supports};

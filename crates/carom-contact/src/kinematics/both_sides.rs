@@ -52,6 +52,16 @@ pub struct NodesWithDepth {
     pub depths: Vec<f64>,
 }
 
+impl NodesWithDepth {
+    /// The nodes that may have no depth.
+    #[must_use]
+    pub fn without_depth(self) -> Self {
+        let all = self.nodes.into_iter().zip(self.depths);
+        let (nodes, depths) = all.filter(|(_, depth)| *depth == 0.0).unzip();
+        Self { nodes, depths }
+    }
+}
+
 /// Contact in both directions: secondary nodes against the primary side, and nodes of the primary
 /// side against the secondary one.
 #[derive(Debug)]

@@ -41,7 +41,7 @@ pub use facets::{Depth, OnFacet};
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
 pub use joined::{Joined, WithEdges, WithTips};
-pub use mortar::Mortar;
+pub use mortar::{Mortar, Quadrature};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::NodeToObstacle;
 pub use obstacle::{Faceted, Obstacle, Polyline, PolylineError, Tip};

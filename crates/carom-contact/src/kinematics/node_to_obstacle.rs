@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 use carom_algebra::Vector;
 
+use super::both_sides::NodesWithDepth;
 use super::carrier::{Carrier, Local};
 use super::node_to_facet::NodeToFacet;
 use super::obstacle::{AtCorner, CORNER_COSINE, Near, Obstacle, ObstacleGap, Point, Through, Tip, dot};
@@ -38,6 +39,8 @@ pub struct NodeToObstacle {
     lengths: Vec<f64>,
     /// Boundary of the body of the nodes, if it is known.
     own: Option<Outward>,
+    /// Depth that each node may have without contact; empty if none may have any.
+    allowed: Vec<f64>,
     /// Initial depth that is kept for each node; empty if all are zero.
     kept: Vec<f64>,
 }
@@ -54,6 +57,7 @@ impl NodeToObstacle {
             tips,
             lengths: Vec::new(),
             own: None,
+            allowed: Vec::new(),
             kept: Vec::new(),
         }
     }
@@ -78,16 +82,26 @@ impl NodeToObstacle {
         Self { own: Some(own), ..self }
     }
 
-    /// Contact of those of the nodes that are listed.
+    /// Contact of those of the nodes that are listed, each with the depth that it may have without
+    /// contact.
     #[must_use]
-    pub fn of_nodes(&self, nodes: &[usize]) -> Self {
-        let own = self.secondary.iter().enumerate().filter(|(_, node)| nodes.contains(node));
-        let places: Vec<usize> = own.map(|(place, _)| place).collect();
+    pub fn of_nodes(&self, nodes: &NodesWithDepth) -> Self {
+        let of_all = |(place, &node): (usize, &usize)| {
+            let listed = nodes.nodes.iter().position(|&other| other == node)?;
+            Some((place, nodes.depths[listed]))
+        };
+        let found: Vec<(usize, f64)> = self.secondary.iter().enumerate().filter_map(of_all).collect();
         Self {
-            secondary: places.iter().map(|&place| self.secondary[place]).collect(),
-            lengths: places.iter().filter_map(|&place| self.lengths.get(place).copied()).collect(),
+            secondary: found.iter().map(|&(place, _)| self.secondary[place]).collect(),
+            lengths: found.iter().filter_map(|&(place, _)| self.lengths.get(place).copied()).collect(),
+            allowed: found.iter().map(|&(_, allowed)| allowed).collect(),
             ..self.clone()
         }
+    }
+
+    /// Depth at which the gap of a node is zero.
+    fn slack(&self, place: usize) -> f64 {
+        self.allowed(place) + self.kept(place)
     }
 
     fn position(&self, node: usize, y: &[f64]) -> Point {
@@ -276,7 +290,7 @@ impl Kinematics for NodeToObstacle {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        Some(self.distance_to_obstacle(self.secondary[node], y)? + self.kept(node))
+        Some(self.distance_to_obstacle(self.secondary[node], y)? + self.slack(node))
     }
 
     fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {
@@ -290,6 +304,10 @@ impl Kinematics for NodeToObstacle {
             Tip { center: moved.unwrap_or(tip.center), ..tip }
         };
         self.tips.iter().copied().map(placed).collect()
+    }
+
+    fn allowed(&self, node: usize) -> f64 {
+        self.allowed.get(node).copied().unwrap_or(0.0)
     }
 
     fn keep(&mut self, depths: &[f64]) {
@@ -340,7 +358,7 @@ impl Kinematics for NodeToObstacle {
         let met = |&node: &usize| {
             let [from, to] = [before, now].map(|y| self.local(self.secondary[node], y).at);
             // The path relative to an obstacle that turns is not straight.
-            if turns || self.kept(node) > 0.0 { None } else { self.shape.met(from, to) }
+            if turns || self.slack(node) > 0.0 { None } else { self.shape.met(from, to) }
         };
         nodes.iter().map(met).collect()
     }
@@ -349,7 +367,7 @@ impl Kinematics for NodeToObstacle {
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
         let through = |(place, length): (usize, &f64)| {
             let node = self.secondary[place];
-            let limit = |share: f64| self.kept(place) + share * length;
+            let limit = |share: f64| self.slack(place) + share * length;
             let [from, to] = [before, now].map(|y| self.local(node, y).at);
             let Through { depth, normals } = self.shape.deepest_between(from, to, limit(SHARE))?;
             let limit = limit(share(normals, bounce));
@@ -364,7 +382,7 @@ impl Kinematics for NodeToObstacle {
         let node = self.secondary[pair.node];
         pair.facet = self.measured(pair, &self.local(node, y), y);
         let gap = self.gap(pair.facet, node, y).ok_or(ContactError::Center { node })?;
-        self.push(gap.distance + self.kept(pair.node), node, gap.gradient(), rows);
+        self.push(gap.distance + self.slack(pair.node), node, gap.gradient(), rows);
         Ok(())
     }
 

@@ -6,7 +6,8 @@ use std::collections::{HashMap, HashSet};
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
     BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Joined, Kinematics, Mortar, NodeToFacet,
-    NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Surface, TipToFacet, WithEdges, WithTips,
+    NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet, WithEdges,
+    WithTips,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
 
@@ -63,32 +64,23 @@ impl Bodies<'_> {
         if self.case.dimension == 1 || point == ContactPoint::Frozen {
             return Box::new(nodes);
         }
-        let own = self.others(primary, &of_primary[0], secondary, &side.corners(self.reference));
-        let others = NodeToFacet::new(own.nodes, opposite.clone(), Detection::ClosestPoint)
-            .with_allowed(own.depths)
-            .with_single_facets(single)
-            .of_body(side.clone());
-        let both = BothSides::new(nodes, others);
-        match spec.method {
-            case::Method::NodeToSegment => Box::new(both),
-            case::Method::Mortar => {
-                let corners = BothSides::new(
-                    self.corners(secondary, &of_secondary[0], [&opposite, &side]),
-                    self.corners(primary, &of_primary[0], [&side, &opposite]),
-                );
-                Box::new(Joined::new(Mortar::new(opposite, side, self.reference, both), corners))
-            }
+        let corners = |surface: &Surface| surface.corners(self.reference);
+        let theirs = self.others(primary, &of_primary[0], secondary, &corners(&side));
+        let against = |of: NodesWithDepth, own: &Surface, other: &Surface| {
+            NodeToFacet::new(of.nodes, other.clone(), Detection::ClosestPoint)
+                .with_allowed(of.depths)
+                .with_single_facets(single)
+                .of_body(own.clone())
+        };
+        let both = BothSides::new(nodes, against(theirs.clone(), &side, &opposite));
+        if spec.method == case::Method::NodeToSegment {
+            return Box::new(both);
         }
-    }
-
-    /// The corners of a side, except those on sides of `earlier` contacts, against the facets of
-    /// another one: a gap that is zero on average does not keep a corner out.
-    fn corners(&self, of: &Side, earlier: &[Side], [own, other]: [&Surface; 2]) -> NodeToFacet {
-        let corners = own.corners(self.reference);
-        let mut nodes = without(&of.nodes, earlier);
-        nodes.retain(|node| corners.contains(node));
-        nodes.sort_unstable();
-        NodeToFacet::new(nodes, other.clone(), Detection::ClosestPoint).of_body(own.clone())
+        let ours = self.others(secondary, &of_secondary[0], primary, &corners(&opposite));
+        let [ours, theirs] = [ours, theirs].map(|nodes| bounded(spec, nodes));
+        let single = BothSides::new(against(ours, &opposite, &side), against(theirs, &side, &opposite));
+        let mortar = Mortar::new(opposite, side, self.reference, both).integrated(quadrature(spec));
+        Box::new(Joined::new(mortar, single))
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {
@@ -133,7 +125,7 @@ impl Bodies<'_> {
             if springs || rubs { tips.with_single_facets() } else { tips }
         });
         match self.case.contacts[k].method {
-            case::Method::Mortar => self.mortar_with_obstacle(surface, obstacle, tips),
+            case::Method::Mortar => self.mortar_with_obstacle(k, side, surface, obstacle, tips),
             case::Method::NodeToSegment => match tips {
                 Some(tips) => Box::new(WithTips::new(obstacle, tips)),
                 None => Box::new(obstacle),
@@ -141,15 +133,21 @@ impl Bodies<'_> {
         }
     }
 
-    /// Contact on average with a rigid obstacle, with its corners, if any, and those of the side.
+    /// Contact on average with a rigid obstacle, with bounds for single nodes and with the corners
+    /// of the obstacle, if any.
     fn mortar_with_obstacle(
         &self,
+        k: usize,
+        side: &Side,
         surface: Surface,
         obstacle: NodeToObstacle,
         tips: Option<TipToFacet>,
     ) -> Box<dyn Kinematics> {
-        let corners = obstacle.of_nodes(&surface.corners(self.reference));
-        let mortar = Joined::new(Mortar::with_obstacle(surface, obstacle, self.reference), corners);
+        let spec = &self.case.contacts[k];
+        let single = bounded(spec, self.others(side, &[], side, &surface.corners(self.reference)));
+        let single = obstacle.of_nodes(&single);
+        let mortar = Mortar::with_obstacle(surface, obstacle, self.reference);
+        let mortar = Joined::new(mortar.integrated(quadrature(spec)), single);
         match tips {
             Some(tips) => Box::new(Joined::new(mortar, tips)),
             None => Box::new(mortar),
@@ -204,18 +202,12 @@ impl Bodies<'_> {
         move |node, axis| self.fixed[dimension * node + axis]
     }
 
-    /// The nodes of the primary side, each with the depth to which it may enter facets of the
-    /// secondary side: none at corners.
-    fn others(
-        &self,
-        primary: &Side,
-        earlier: &[Side],
-        secondary: &Side,
-        corners: &[usize],
-    ) -> NodesWithDepth {
-        let lengths = lengths(&secondary.facets, self.reference, self.case.dimension);
+    /// The nodes of a side, except those on sides of `earlier` contacts, each with the depth to
+    /// which it may enter facets of another side: none at corners.
+    fn others(&self, side: &Side, earlier: &[Side], other: &Side, corners: &[usize]) -> NodesWithDepth {
+        let lengths = lengths(&other.facets, self.reference, self.case.dimension);
         let shortest = lengths.map(|(_, length)| length).fold(f64::INFINITY, f64::min);
-        let mut nodes = without(&primary.nodes, earlier);
+        let mut nodes = without(&side.nodes, earlier);
         nodes.sort_unstable();
         let allowed = |node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest };
         let depths = nodes.iter().map(allowed).collect();
@@ -261,6 +253,23 @@ impl Bodies<'_> {
         rest.sort_by_key(|facet| !own.contains(facet));
         let count = rest.iter().filter(|facet| own.contains(facet)).count();
         (rest, count)
+    }
+}
+
+/// The nodes with a bound on their depth beside gaps that are zero on average, which keep out no
+/// single node: beside a kink of the other side one would enter far. Springs let in every node; with
+/// them only corners are kept out.
+fn bounded(spec: &ContactSpec, nodes: NodesWithDepth) -> NodesWithDepth {
+    match spec.enforcement {
+        case::Enforcement::Penalty => nodes.without_depth(),
+        case::Enforcement::Multiplier | case::Enforcement::Augmented => nodes,
+    }
+}
+
+fn quadrature(spec: &ContactSpec) -> Quadrature {
+    match spec.quadrature {
+        case::Quadrature::Segments => Quadrature::Segments,
+        case::Quadrature::Fixed => Quadrature::Fixed,
     }
 }
 

@@ -1,5 +1,5 @@
 //! The parts of a secondary facet that lie opposite to single facets of the primary, and the points
-//! of quadrature on them.
+//! of quadrature on them, or else fixed points of quadrature with the facet that each faces.
 //!
 //! A point of the secondary side belongs to the facet of the primary between whose ends it lies:
 //! at a joint v of two facets with unit tangents t and t', the border is the line
@@ -19,6 +19,17 @@ use carom_algebra::Vector;
 use crate::kinematics::projection::{Facet, bisected};
 use crate::kinematics::surface::Surface;
 use crate::places::Places;
+
+/// Points at which weighted gaps of mortar contact are measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quadrature {
+    /// Points on each part of a secondary facet that faces a single facet of the primary: exact
+    /// where both are flat.
+    #[default]
+    Segments,
+    /// Fixed points on the secondary facets.
+    Fixed,
+}
 
 /// Parts of a facet, in ξ, that are not worth integrating over.
 const ROUND_OFF: f64 = 1e-14;
@@ -65,6 +76,13 @@ impl Region {
         let to = part_beyond(facet, y, self.end, -1.0)?;
         let part = [from[0].max(to[0]), from[1].min(to[1])];
         (part[1] - part[0] > ROUND_OFF).then_some(part)
+    }
+
+    /// Whether a point of a surface with a normal lies between the ends, and the facet faces it.
+    fn contains(&self, point: Vector<2>, normal: Vector<2>) -> bool {
+        let from = (point - self.start[0]).dot(&self.start[1]);
+        let to = (self.end[0] - point).dot(&self.end[1]);
+        normal.dot(&self.normal) < 0.0 && from >= 0.0 && to >= 0.0
     }
 
     /// Where a point lies between the ends, from −1 to 1.
@@ -119,10 +137,48 @@ pub(super) struct Facing {
 
 impl Facing {
     /// A facet of which all points face a rigid obstacle.
-    pub(super) fn whole(rule: &[[f64; 2]]) -> Self {
-        let points = rule.iter().map(|&[xi, weight]| Opposed { xi, weight, facet: 0, eta: 0.0 });
+    pub(super) fn whole(rule: &Rule) -> Self {
+        let points = rule.points.iter().map(|&[xi, weight]| Opposed { xi, weight, facet: 0, eta: 0.0 });
         Self { points: points.collect(), ends: Some([-1.0, 1.0]) }
     }
+}
+
+/// Where and how a weighted gap is integrated over a secondary facet.
+#[derive(Clone, Debug)]
+pub(super) struct Rule {
+    /// Points and weights on −1 … 1: on each part, or on the facet.
+    pub(super) points: Vec<[f64; 2]>,
+    pub(super) quadrature: Quadrature,
+}
+
+/// Number of parts of equal length in a facet with fixed points.
+const PARTS: usize = 4;
+
+impl Rule {
+    /// A rule for facets of two degrees on parts of the secondary facet, which are polynomials
+    /// over flat facets, or with k + 2 fixed points on each quarter of a secondary facet of degree
+    /// k.
+    pub(super) fn new(quadrature: Quadrature, [secondary, opposite]: [usize; 2]) -> Self {
+        let [exact, parts] = match quadrature {
+            Quadrature::Segments => [2 * secondary.max(opposite) + 3, 1],
+            Quadrature::Fixed => [2 * secondary + 3, PARTS],
+        };
+        let share = (parts as f64).recip();
+        let of_part = |part: usize| {
+            let middle = -1.0 + share * (2 * part + 1) as f64;
+            let rule = carom_solid::quadrature::line(exact);
+            let placed: Vec<_> = rule.iter().map(|(xi, w)| [middle + share * xi[0], share * w]).collect();
+            placed
+        };
+        Self { points: (0..parts).flat_map(of_part).collect(), quadrature }
+    }
+}
+
+/// A primary side in one configuration, with the regions of those of its facets that count.
+pub(super) struct Opposites<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) regions: Vec<(usize, Region)>,
+    pub(super) y: Places<'a>,
 }
 
 /// The part of a secondary facet that lies opposite to a facet of the primary.
@@ -132,58 +188,90 @@ struct Part<'a> {
     region: &'a Region,
 }
 
-/// Finds the part of a secondary facet that faces facets of the primary with these regions at
-/// positions `y`;
-/// `rule`: points and weights of quadrature on −1 … 1.
-pub(super) fn facing(
-    own: Facet,
-    primary: &Surface,
-    regions: &[(usize, Region)],
-    rule: &[[f64; 2]],
-    y: Places,
-) -> Facing {
-    let mut parts = Vec::new();
-    let normal = own.at(y, 0.0).normal;
-    for (facet, region) in regions {
-        if let Some(ends) = region.part_of(own, normal, y) {
-            parts.push(Part { ends, facet: *facet, region });
+impl Opposites<'_> {
+    /// Finds the part of a secondary facet that faces these facets.
+    pub(super) fn facing(&self, own: Facet, rule: &Rule) -> Facing {
+        match rule.quadrature {
+            Quadrature::Segments => self.facing_in_parts(own, &rule.points),
+            Quadrature::Fixed => self.facing_at_points(own, &rule.points),
         }
     }
-    let mut ends: Vec<f64> = parts.iter().flat_map(|part| part.ends).collect();
-    ends.sort_unstable_by(f64::total_cmp);
-    let own_length = (y.at(own.nodes[1]) - y.at(own.nodes[0])).norm();
-    let mut found = Facing::default();
-    for piece in ends.windows(2).filter(|piece| piece[1] - piece[0] > ROUND_OFF) {
-        let middle = 0.5 * (piece[0] + piece[1]);
-        let half = 0.5 * (piece[1] - piece[0]);
-        let mut over = parts.iter().filter(|part| part.ends[0] <= middle && middle <= part.ends[1]);
-        // Where walls stand behind each other, the nearest one counts. Behind a facet by more than
-        // a facet's length, a point is not inside the body there.
-        let gap = |part: &&Part| {
-            let Opposed { facet, eta, .. } = opposed(own, primary, part, [middle, 0.0], y)?;
-            let gap = primary.gap(facet, eta, own.at(y, middle).position, y);
-            (gap > -part.region.length.max(own_length)).then_some(gap.abs())
-        };
-        let nearest =
-            over.by_ref().filter_map(|part| Some((gap(&part)?, part))).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, part)) = nearest else { continue };
-        for [at, weight] in rule {
-            found.points.extend(opposed(own, primary, part, [middle + half * at, half * weight], y));
-        }
-        found.ends = Some([found.ends.map_or(piece[0], |ends| ends[0]), piece[1]]);
-    }
-    found
-}
 
-/// A point of a secondary facet over a facet of the primary; none without a unique closest point.
-fn opposed(own: Facet, primary: &Surface, part: &Part, [xi, weight]: [f64; 2], y: Places) -> Option<Opposed> {
-    let point = own.at(y, xi).position;
-    let start = part.region.between(point);
-    let opposite = primary.facet(part.facet);
-    // Far away, Newton's method may never be still.
-    let eta = opposite.closest_from(y, point, start, BEYOND);
-    let eta = eta.or_else(|| opposite.closest_point(y, point, BEYOND))?;
-    Some(Opposed { xi, weight, facet: part.facet, eta })
+    fn facing_in_parts(&self, own: Facet, rule: &[[f64; 2]]) -> Facing {
+        let mut parts = Vec::new();
+        let normal = own.at(self.y, 0.0).normal;
+        for (facet, region) in &self.regions {
+            if let Some(ends) = region.part_of(own, normal, self.y) {
+                parts.push(Part { ends, facet: *facet, region });
+            }
+        }
+        let mut ends: Vec<f64> = parts.iter().flat_map(|part| part.ends).collect();
+        ends.sort_unstable_by(f64::total_cmp);
+        let mut found = Facing::default();
+        for piece in ends.windows(2).filter(|piece| piece[1] - piece[0] > ROUND_OFF) {
+            let middle = 0.5 * (piece[0] + piece[1]);
+            let half = 0.5 * (piece[1] - piece[0]);
+            let over = parts.iter().filter(|part| part.ends[0] <= middle && middle <= part.ends[1]);
+            let over = over.map(|part| (part.facet, part.region));
+            let Some((facet, region)) = self.nearest(own, over, middle) else { continue };
+            for [at, weight] in rule {
+                let at = [middle + half * at, half * weight];
+                found.points.extend(self.opposed(own, facet, region, at));
+            }
+            found.ends = Some([found.ends.map_or(piece[0], |ends| ends[0]), piece[1]]);
+        }
+        found
+    }
+
+    fn facing_at_points(&self, own: Facet, rule: &[[f64; 2]]) -> Facing {
+        let mut found = Facing::default();
+        let normal = own.at(self.y, 0.0).normal;
+        let mut end = -1.0;
+        for &[xi, weight] in rule {
+            let start = end;
+            end += weight;
+            let point = own.at(self.y, xi).position;
+            let over = self.regions.iter().filter(|(_, region)| region.contains(point, normal));
+            let over = over.map(|(facet, region)| (*facet, region));
+            let Some((facet, region)) = self.nearest(own, over, xi) else { continue };
+            let before = found.points.len();
+            found.points.extend(self.opposed(own, facet, region, [xi, weight]));
+            if found.points.len() > before {
+                found.ends = Some([found.ends.map_or(start, |ends| ends[0]), end]);
+            }
+        }
+        found
+    }
+
+    /// The nearest of the facets over which a point lies: walls may stand behind each other. Behind
+    /// a facet by more than a facet's length, a point is not inside the body there.
+    fn nearest<'r>(
+        &self,
+        own: Facet,
+        over: impl Iterator<Item = (usize, &'r Region)>,
+        xi: f64,
+    ) -> Option<(usize, &'r Region)> {
+        let own_length = (self.y.at(own.nodes[1]) - self.y.at(own.nodes[0])).norm();
+        let gap = |facet: usize, region: &Region| {
+            let Opposed { eta, .. } = self.opposed(own, facet, region, [xi, 0.0])?;
+            let gap = self.surface.gap(facet, eta, own.at(self.y, xi).position, self.y);
+            (gap > -region.length.max(own_length)).then_some(gap.abs())
+        };
+        let with_gaps = over.filter_map(|(facet, region)| Some((gap(facet, region)?, facet, region)));
+        let (_, facet, region) = with_gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((facet, region))
+    }
+
+    /// A point of a secondary facet over a facet of the primary; none without a unique closest
+    /// point.
+    fn opposed(&self, own: Facet, facet: usize, region: &Region, [xi, weight]: [f64; 2]) -> Option<Opposed> {
+        let point = own.at(self.y, xi).position;
+        let opposite = self.surface.facet(facet);
+        // Far away, Newton's method may never be still.
+        let eta = opposite.closest_from(self.y, point, region.between(point), BEYOND);
+        let eta = eta.or_else(|| opposite.closest_point(self.y, point, BEYOND))?;
+        Some(Opposed { xi, weight, facet, eta })
+    }
 }
 
 /// |η| up to which a closest point is followed past the end of a facet: at a kink of 30°, a point

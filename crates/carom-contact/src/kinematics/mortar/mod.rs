@@ -18,6 +18,7 @@ mod windows;
 
 use carom_algebra::Vector;
 
+pub use self::cut::Quadrature;
 use self::opposite::Opposite;
 pub use self::sides::Mortar;
 use self::weighted::Sample;

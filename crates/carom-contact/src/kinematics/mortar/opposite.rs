@@ -2,7 +2,7 @@
 
 use carom_algebra::Vector;
 
-use super::cut::{self, Facing, Opposed, Region};
+use super::cut::{Facing, Opposed, Opposites, Region, Rule};
 use crate::kinematics::NodeToObstacle;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::gap::Gap;
@@ -44,9 +44,10 @@ impl Primary {
         Self { surface, order, place }
     }
 
-    /// Facets with their regions at positions `y`.
-    fn regions(&self, facets: &[usize], y: Places) -> Vec<(usize, Region)> {
-        facets.iter().map(|&facet| (facet, Region::of(&self.surface, facet, y))).collect()
+    /// Some facets at positions `y`.
+    fn at<'a>(&'a self, facets: &[usize], y: Places<'a>) -> Opposites<'a> {
+        let regions = facets.iter().map(|&facet| (facet, Region::of(&self.surface, facet, y)));
+        Opposites { surface: &self.surface, regions: regions.collect(), y }
     }
 }
 
@@ -112,21 +113,18 @@ impl Opposite {
     }
 
     /// A function that finds the part of a facet of the secondary side that faces `facets` at
-    /// positions `y`, with points of quadrature; `rule`: points and weights on −1 … 1.
+    /// positions `y`, with points of quadrature.
     pub(super) fn facing<'a>(
         &'a self,
         facets: &[usize],
-        rule: &'a [[f64; 2]],
+        rule: &'a Rule,
         y: Places<'a>,
     ) -> impl Fn(Facet) -> Facing + 'a {
-        let regions = match self {
-            Self::Side(primary) => primary.regions(facets, y),
-            Self::Obstacle(_) => Vec::new(),
+        let primary = match self {
+            Self::Side(primary) => Some(primary.at(facets, y)),
+            Self::Obstacle(_) => None,
         };
-        move |own| match self {
-            Self::Side(primary) => cut::facing(own, &primary.surface, &regions, rule, y),
-            Self::Obstacle(_) => Facing::whole(rule),
-        }
+        move |own| primary.as_ref().map_or_else(|| Facing::whole(rule), |side| side.facing(own, rule))
     }
 
     /// The gap of a point at a place; none at the centre of a circle, where no direction is

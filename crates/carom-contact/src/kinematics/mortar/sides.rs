@@ -2,9 +2,8 @@
 
 use std::sync::Mutex;
 
-use carom_solid::quadrature;
-
 use super::cache::Cache;
+use super::cut::{Quadrature, Rule};
 use super::multipliers::{Multiplier, degree_of_pressure, multipliers};
 use super::opposite::{Opposite, Primary};
 use crate::kinematics::facets::Facets;
@@ -22,8 +21,7 @@ pub struct Mortar {
     pub(super) nodes: Vec<usize>,
     /// Degree of the pressure.
     pub(super) degree: usize,
-    /// Points and weights of quadrature on −1 … 1.
-    pub(super) rule: Vec<[f64; 2]>,
+    pub(super) rule: Rule,
     pub(super) reference: Vec<f64>,
     /// Nodes on whose positions gaps depend.
     pub(super) surface: Vec<usize>,
@@ -66,8 +64,7 @@ impl Mortar {
     ) -> Self {
         let multipliers = multipliers(&secondary, reference);
         let degree = secondary.shape().degree();
-        let exact = 2 * degree.max(opposite.degree()) + 3;
-        let rule = quadrature::line(exact).iter().map(|(xi, weight)| [xi[0], weight]).collect();
+        let rule = Rule::new(Quadrature::default(), [degree, opposite.degree()]);
         let mut used = vec![false; secondary.facets()];
         let parts = multipliers.iter().flat_map(|of| &of.parts);
         parts.for_each(|part| used[part.facet] = true);
@@ -91,6 +88,13 @@ impl Mortar {
             sides,
             sides_kept: Vec::new(),
         }
+    }
+
+    /// With another quadrature than in parts.
+    #[must_use]
+    pub fn integrated(mut self, quadrature: Quadrature) -> Self {
+        self.rule = Rule::new(quadrature, [self.secondary.shape().degree(), self.opposite.degree()]);
+        self
     }
 
     /// Positions of the reference configuration.

@@ -12,6 +12,7 @@
 use carom_algebra::Vector;
 
 use super::cache::{Faced, Measured};
+use super::cut::{Quadrature, Rule};
 use super::multipliers::{Part, bernstein};
 use super::opposite::PointGap;
 use super::sides::Mortar;
@@ -168,8 +169,8 @@ impl Mortar {
     /// The smallest gap of a pair at the ends of facets, of either side, on its part of the
     /// secondary side.
     pub(super) fn nearest_of(&self, pair: &Pair, y: Places) -> Option<f64> {
-        const ENDS: [[f64; 2]; 2] = [[-1.0, 0.0], [1.0, 0.0]];
-        let facing = self.opposite.facing(self.opposite.window(pair), &ENDS, y);
+        let ends = Rule { points: vec![[-1.0, 0.0], [1.0, 0.0]], quadrature: Quadrature::Segments };
+        let facing = self.opposite.facing(self.opposite.window(pair), &ends, y);
         let mut nearest: Option<f64> = None;
         for part in &self.multipliers[pair.node].parts {
             let own = self.secondary.facet(part.facet);
