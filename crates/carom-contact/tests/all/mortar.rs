@@ -3,8 +3,8 @@
 
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{
-    BothSides, Carrier, Detection, Kinematics, Mortar, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows,
-    Surface,
+    BothSides, Carrier, Detection, Kinematics, Mortar, NodeToFacet, NodeToObstacle, Obstacle, Pair,
+    Quadrature, Rows, Surface,
 };
 use carom_solid::FacetShape;
 
@@ -58,6 +58,42 @@ fn over_a_circle(shape: FacetShape) -> Scene {
     let circle = Obstacle::circle(&[0.0, -0.7], 0.7, false);
     let obstacle = NodeToObstacle::new((0..nodes).collect(), 2, circle).carried_by(carrier);
     Scene { contact: Mortar::with_obstacle(side, obstacle, &y), y }
+}
+
+/// A curved secondary facet that turns from 63° to 72° away from a straight primary one, or from an
+/// obstacle: its points count partly.
+fn steep(shape: FacetShape, opposite: Steep) -> Scene {
+    let (above, mut y) = chain(shape, [0.0, 0.4], 1, 0, |x| 0.05 + 2.0 * x + 1.3 * x * x);
+    let nodes = y.len() / 2;
+    let secondary = Surface::new(shape, &above, &[1.0]);
+    let obstacle = match opposite {
+        Steep::Facet => {
+            let (below, lower) = chain(shape, [1.5, -1.5], 1, nodes, |_| 0.0);
+            y.extend(lower);
+            let primary = Surface::new(shape, &below, &[1.0]);
+            let nodes = |nodes: Vec<usize>, to: &Surface| {
+                NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint)
+            };
+            let sides = BothSides::new(nodes(above.concat(), &primary), nodes(below.concat(), &secondary));
+            return Scene { contact: Mortar::new(secondary, primary, &y, sides), y };
+        }
+        Steep::Plane => Obstacle::plane(&[0.0, 0.0], &[0.0, 1.0]),
+        Steep::Circle => Obstacle::circle(&[0.1, -3.0], 3.0, false),
+    };
+    let mut obstacle = NodeToObstacle::new((0..nodes).collect(), 2, obstacle);
+    if opposite == Steep::Circle {
+        let carrier = Carrier { nodes: (nodes..nodes + 3).collect(), origin: [0.3, -0.4, 0.0], length: 2.0 };
+        y.extend(carrier.places(2));
+        obstacle = obstacle.carried_by(carrier);
+    }
+    Scene { contact: Mortar::with_obstacle(secondary, obstacle, &y), y }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Steep {
+    Facet,
+    Plane,
+    Circle,
 }
 
 impl Scene {
@@ -127,12 +163,42 @@ fn derivatives_agree_with_differences() {
     }
 }
 
+/// Where points count partly, the gradient includes the derivative of their weight. The second
+/// derivative leaves out that of the normal of the primary side, which is zero of a fixed plane.
+#[test]
+fn derivatives_of_partly_facing_points_agree_with_differences() {
+    for (shape, opposite) in SHAPES
+        .into_iter()
+        .flat_map(|shape| [Steep::Facet, Steep::Plane, Steep::Circle].map(|opposite| (shape, opposite)))
+    {
+        let scene = steep(shape, opposite);
+        for pair in scene.pairs() {
+            let gap = |y: &[f64]| vec![scene.row(&pair, y).row(0).gap];
+            let error = jacobian_error(&scene.y, 1e-4, gap, &scene.gradient(&pair, &scene.y));
+            assert!(error < 1e-8, "{shape:?} {opposite:?} {}: gradient {error:e}", pair.node);
+            if opposite == Steep::Plane {
+                let of = |matrix: &mut [f64]| scene.contact.curvature_into(&pair, &scene.y, matrix);
+                let hessian = scene.full(&pair, of);
+                let error = jacobian_error(&scene.y, 1e-4, |y| scene.gradient(&pair, y), &hessian);
+                assert!(error < 1e-7, "{shape:?} {}: second derivative {error:e}", pair.node);
+            }
+        }
+    }
+}
+
 /// However the facets are cut, the forces on both sides are opposite and in line.
 #[test]
 fn force_and_moment_balance_and_rigid_motions_do_nothing() {
-    // Without facets of the primary: over an obstacle.
-    for (shape, count) in SHAPES.into_iter().flat_map(|shape| [0, 1, 2, 5, 7].map(|count| (shape, count))) {
-        let scene = if count == 0 { over_a_circle(shape) } else { scene(shape, count, 0.02) };
+    let scenes = |shape: FacetShape| {
+        let mut scenes = vec![over_a_circle(shape), steep(shape, Steep::Facet), steep(shape, Steep::Circle)];
+        for count in [1, 2, 5, 7] {
+            let Scene { contact, y } = scene(shape, count, 0.02);
+            scenes.push(Scene { contact: contact.integrated(Quadrature::Fixed), y });
+            scenes.push(scene(shape, count, 0.02));
+        }
+        scenes.into_iter().map(move |scene| (shape, scene))
+    };
+    for (shape, scene) in SHAPES.into_iter().flat_map(scenes) {
         let (s, c) = 0.7_f64.sin_cos();
         let turned = |x: &[f64]| [c * x[0] - s * x[1] + 5.0, s * x[0] + c * x[1] - 3.0];
         let moved: Vec<f64> = scene.y.chunks(2).flat_map(turned).collect();
@@ -144,9 +210,9 @@ fn force_and_moment_balance_and_rigid_motions_do_nothing() {
                 sum += Vector(*f);
                 moment += y[0] * f[1] - y[1] * f[0];
             }
-            assert!(sum.norm() < 1e-13 && moment.abs() < 1e-13, "{shape:?} {count}: {sum:?} {moment:e}");
+            assert!(sum.norm() < 1e-13 && moment.abs() < 1e-13, "{shape:?}: {sum:?} {moment:e}");
             let [here, there] = [&scene.y, &moved].map(|y| scene.row(&pair, y).row(0).gap);
-            assert!((here - there).abs() < 1e-13, "{shape:?} {count}: {here} {there}");
+            assert!((here - there).abs() < 1e-13, "{shape:?}: {here} {there}");
             let mut rows = Rows::new(2);
             scene.contact.slip(&pair, &scene.y, &[], &mut rows).unwrap();
             let spin: Vec<f64> = scene.y.chunks(2).flat_map(|x| [-x[1] + 0.4, x[0] - 2.0]).collect();

@@ -3,14 +3,18 @@
 use super::cut::Opposed;
 use super::multipliers::MOST;
 use super::opposite::PointGap;
+use super::turned::Turned;
 
 /// A point of quadrature with the gap there.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Measured {
     pub(super) at: Opposed,
     pub(super) gap: PointGap,
-    /// Weight of quadrature, over the reference surface.
+    /// Weight of quadrature, over the reference surface, times that with which the point faces the
+    /// primary.
     pub(super) area: f64,
+    /// Derivatives of the latter, where it is neither 0 nor 1.
+    pub(super) turned: Option<Box<Turned>>,
 }
 
 /// A secondary facet at one configuration.

@@ -11,21 +11,9 @@ use super::cache::{Faced, Measured};
 use super::cut::{Facing, Opposed};
 use super::multipliers::{MOST, Part, bernstein};
 use super::sides::Mortar;
+use super::turned::{Own, Turned};
 use crate::kinematics::projection::Facet;
 use crate::places::Places;
-
-/// Cosines of the angles from the opposite direction up to which a point faces the primary, and
-/// beyond which it does not: 60° and 75°. Where surfaces meet at a larger angle, one of them ends
-/// in a corner, which has a row of its own.
-const FACES: [f64; 2] = [0.5, 0.258_819_045_102_520_74];
-
-/// Weight of a point at which the normals of both sides have this cosine to opposite directions:
-/// from 0 to 1 without a jump, as a point turns to the primary.
-fn facing(cosine: f64) -> f64 {
-    let [fully, hardly] = FACES;
-    let x = ((cosine - hardly) / (fully - hardly)).clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
-}
 
 /// Share of the area of a multiplier that must face the primary for a pressure of its own.
 const COVERED: f64 = 0.05;
@@ -65,9 +53,9 @@ impl Mortar {
     fn measured(&self, own: Facet, at: Opposed, y: Places) -> Option<Measured> {
         let place = own.at(y, at.xi);
         let gap = self.opposite.gap(&at, place.position, y)?;
-        let faces = facing(-place.normal.dot(&gap.normal()));
-        let area = faces * at.weight * own.at(self.reference(), at.xi).measure;
-        Some(Measured { at, gap, area })
+        let (weight, turned) = Turned::of(&Own { tangent: place.tangent, normal: place.normal }, &gap);
+        let area = weight * at.weight * own.at(self.reference(), at.xi).measure;
+        Some(Measured { at, gap, area, turned })
     }
 
     /// For each facet and polynomial the polynomial that carries it: itself, if enough of its

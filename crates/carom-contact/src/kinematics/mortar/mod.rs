@@ -13,6 +13,7 @@ mod measured;
 mod multipliers;
 mod opposite;
 mod sides;
+mod turned;
 mod weighted;
 mod windows;
 
@@ -154,11 +155,10 @@ impl Kinematics for Mortar {
         }
         let stencil = self.stencil(pair);
         let mut gap = 0.0;
-        let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         for sample in &samples {
-            gap += sample.share * (sample.gap.distance() + kept);
-            sample.gap.gradient(stencil.adder(self, sample, &mut slopes));
+            gap += sample.share * sample.distance();
+            sample.gradient(stencil.adder(self, sample, &mut slopes));
         }
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
         Ok(())
@@ -185,8 +185,8 @@ impl Kinematics for Mortar {
         curvature.fill(0.0);
         let mut of_sample = [0.0; OF_SAMPLE];
         for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            sample.gap.curvature_into(&mut of_sample);
-            stencil.add_matrix(self, &sample, &of_sample, curvature);
+            let count = sample.curvature_into(&mut of_sample);
+            stencil.add_matrix(self, &sample, &of_sample[..4 * count * count], curvature);
         }
     }
 
@@ -206,10 +206,11 @@ impl Kinematics for Mortar {
         let mut of_sample = [0.0; OF_SAMPLE];
         for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
             sample.gap.slip_derivative_into(&mut of_sample);
-            stencil.add_matrix(self, &sample, &of_sample, matrix);
+            let count = sample.gap.count();
+            stencil.add_matrix(self, &sample, &of_sample[..4 * count * count], matrix);
         }
     }
 }
 
-/// Most entries of a matrix over a point and the nodes of a facet.
-const OF_SAMPLE: usize = 100;
+/// Most entries of a matrix over a point, the nodes opposite, and the tangent.
+const OF_SAMPLE: usize = 4 * turned::MOST * turned::MOST;

@@ -16,17 +16,24 @@ use super::cut::{Quadrature, Rule};
 use super::multipliers::{Part, bernstein};
 use super::opposite::PointGap;
 use super::sides::Mortar;
+use super::turned::Turned;
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;
 
 /// A point of quadrature in the weighted gap of a multiplier.
+#[derive(Debug)]
 pub(super) struct Sample {
     /// Weight of the gap in the weighted gap.
     pub(super) share: f64,
-    /// The secondary facet, and the weights N_a of its nodes in the point.
+    /// The secondary facet, and the weights of its nodes in the point, N_a, and in its tangent.
     own: usize,
     values: [f64; 4],
+    slopes: [f64; 4],
     pub(super) gap: PointGap,
+    /// Derivatives of the weight with which the point faces the primary, where that is partly.
+    turned: Option<Box<Turned>>,
+    /// Initial depth that is kept, by which the gap is larger.
+    kept: f64,
     /// Facet of the primary, and the closest point on it; 0 of an obstacle.
     pub(super) facet: usize,
     pub(super) eta: f64,
@@ -50,6 +57,33 @@ struct Placed {
 
 /// A node of a stencil on which the point or a node of the primary facet depends, with its weight.
 type Weighted = (usize, f64);
+
+impl Sample {
+    /// The gap, with the initial depth that is kept.
+    pub(super) fn distance(&self) -> f64 {
+        self.gap.distance() + self.kept
+    }
+
+    /// Calls a function with the gradients of the weighted gap of the point, over its weight, by
+    /// the point, the nodes opposite, and the tangent.
+    pub(super) fn gradient(&self, mut of: impl FnMut(usize, Vector<2>)) {
+        self.gap.gradient(&mut of);
+        if let Some(turned) = &self.turned {
+            turned.gradient(self.distance(), of);
+        }
+    }
+
+    /// Second derivative of the weighted gap of the point, over its weight. Returns the number of
+    /// vectors by which it is.
+    pub(super) fn curvature_into(&self, matrix: &mut [f64]) -> usize {
+        let Some(turned) = &self.turned else {
+            self.gap.curvature_into(matrix);
+            return self.gap.count();
+        };
+        turned.curvature_into(self.distance(), &self.gap, matrix);
+        turned.count()
+    }
+}
 
 impl Stencil {
     fn place(&self, mortar: &Mortar, sample: &Sample) -> Placed {
@@ -79,12 +113,12 @@ impl Stencil {
         }
     }
 
-    /// Adds a matrix over a point and the nodes opposite, two components each, to one over the
-    /// stencil.
+    /// Adds a matrix over a point, the nodes opposite and perhaps the tangent, two components each,
+    /// to one over the stencil.
     pub(super) fn add_matrix(&self, mortar: &Mortar, sample: &Sample, matrix: &[f64], sum: &mut [f64]) {
         let placed = self.place(mortar, sample);
-        let count = sample.gap.count();
-        let n = 2 * count;
+        let n = matrix.len().isqrt();
+        let count = n / 2;
         let size = 2 * self.nodes.len();
         for p in 0..count {
             placed.each(p, sample, |(row, of_row)| {
@@ -105,14 +139,15 @@ impl Stencil {
 }
 
 impl Placed {
-    /// Calls a function with the nodes of the stencil on which number `p` of a gap's nodes depends:
-    /// the point, number 0, or a node opposite.
+    /// Calls a function with the nodes of the stencil on which number `p` of the vectors of a gap
+    /// depends: the point, number 0, a node opposite, or, last, the tangent.
     fn each(&self, p: usize, sample: &Sample, mut of: impl FnMut(Weighted)) {
-        if p > 0 {
+        let is_tangent = p == sample.gap.count();
+        if p > 0 && !is_tangent {
             of((self.others[p - 1], 1.0));
             return;
         }
-        let nodes = self.own.iter().zip(sample.values);
+        let nodes = self.own.iter().zip(if is_tangent { sample.slopes } else { sample.values });
         nodes.filter(|(_, value)| *value != 0.0).for_each(|(&place, value)| of((place, value)));
     }
 }
@@ -138,6 +173,7 @@ impl Mortar {
     /// If a point has no unique closest point on the primary.
     pub(super) fn samples(&self, pair: &Pair, y: Places) -> Result<Vec<Sample>, ContactError> {
         let multiplier = &self.multipliers[pair.node];
+        let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
         self.at(y, |of_facets| {
             let mut samples = Vec::new();
             for &Part { facet, polynomial } in &multiplier.parts {
@@ -145,18 +181,22 @@ impl Mortar {
                 let Faced { points, carriers, .. } = &of_facets[facet];
                 let carried: Vec<usize> =
                     (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
-                for Measured { at, gap, area } in points.iter().filter(|_| !carried.is_empty()) {
+                for Measured { at, gap, area, turned } in points.iter().filter(|_| !carried.is_empty()) {
                     if !self.opposite.is_in_window(pair, at.facet) {
                         continue;
                     }
                     let of_point = Pair { facet: at.facet, xi: at.eta, ..*pair };
                     gap.unless_regular(multiplier.node, &of_point)?;
                     let values = carried.iter().map(|&number| bernstein(self.degree, number, at.xi));
+                    let shape = shape.at(at.xi);
                     samples.push(Sample {
                         share: values.sum::<f64>() * area / multiplier.area,
                         own: facet,
-                        values: shape.at(at.xi).values,
+                        values: shape.values,
+                        slopes: shape.first,
                         gap: *gap,
+                        turned: turned.clone(),
+                        kept,
                         facet: at.facet,
                         eta: at.eta,
                     });
