@@ -243,8 +243,9 @@ impl Opposites<'_> {
         found
     }
 
-    /// The nearest of the facets over which a point lies: walls may stand behind each other. Behind
-    /// a facet by more than a facet's length, a point is not inside the body there.
+    /// The nearest of the facets over which a point lies, if it is one of the side: walls may stand
+    /// behind each other. Behind a facet by more than a facet's length, a point is not inside the
+    /// body there.
     fn nearest<'r>(
         &self,
         own: Facet,
@@ -259,7 +260,7 @@ impl Opposites<'_> {
         };
         let with_gaps = over.filter_map(|(facet, region)| Some((gap(facet, region)?, facet, region)));
         let (_, facet, region) = with_gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some((facet, region))
+        self.surface.is_of_side(facet).then_some((facet, region))
     }
 
     /// A point of a secondary facet over a facet of the primary; none without a unique closest

@@ -27,6 +27,9 @@ pub(super) struct Primary {
     pub(super) order: Vec<usize>,
     /// Place of each facet in `order`.
     pub(super) place: Vec<usize>,
+    /// Facets of the body that face the secondary side in other contacts. What is nearer to them
+    /// belongs to those.
+    siblings: Vec<usize>,
 }
 
 /// Gap of a point of the secondary side, with its derivatives by the point and the nodes opposite.
@@ -41,12 +44,15 @@ impl Primary {
         let order = along(&surface);
         let mut place = vec![0; surface.all()];
         order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
-        Self { surface, order, place }
+        let siblings = (0..surface.all()).filter(|&facet| surface.is_of_sibling(facet));
+        let siblings = siblings.filter(|&facet| !surface.is_mirror(facet)).collect();
+        Self { order, place, siblings, surface }
     }
 
-    /// Some facets at positions `y`.
+    /// Some facets at positions `y`, with those of the other contacts.
     fn at<'a>(&'a self, facets: &[usize], y: Places<'a>) -> Opposites<'a> {
-        let regions = facets.iter().map(|&facet| (facet, Region::of(&self.surface, facet, y)));
+        let regions =
+            facets.iter().chain(&self.siblings).map(|&facet| (facet, Region::of(&self.surface, facet, y)));
         Opposites { surface: &self.surface, regions: regions.collect(), y }
     }
 }
