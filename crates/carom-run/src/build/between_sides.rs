@@ -79,7 +79,7 @@ impl Bodies<'_> {
         let ours = self.others(secondary, &of_secondary[0], primary, &corners(&opposite));
         let [ours, theirs] = [ours, theirs].map(|nodes| bounded(spec, nodes));
         let single = BothSides::new(against(ours, &opposite, &side), against(theirs, &side, &opposite));
-        let mortar = Mortar::new(opposite, side, self.reference, both).integrated(quadrature(spec));
+        let mortar = integrated(spec, Mortar::new(opposite, side, self.reference, both));
         Box::new(Joined::new(mortar, single))
     }
 
@@ -146,8 +146,8 @@ impl Bodies<'_> {
         let spec = &self.case.contacts[k];
         let single = bounded(spec, self.others(side, &[], side, &surface.corners(self.reference)));
         let single = obstacle.of_nodes(&single);
-        let mortar = Mortar::with_obstacle(surface, obstacle, self.reference);
-        let mortar = Joined::new(mortar.integrated(quadrature(spec)), single);
+        let mortar = integrated(spec, Mortar::with_obstacle(surface, obstacle, self.reference));
+        let mortar = Joined::new(mortar, single);
         match tips {
             Some(tips) => Box::new(Joined::new(mortar, tips)),
             None => Box::new(mortar),
@@ -266,11 +266,13 @@ fn bounded(spec: &ContactSpec, nodes: NodesWithDepth) -> NodesWithDepth {
     }
 }
 
-fn quadrature(spec: &ContactSpec) -> Quadrature {
-    match spec.quadrature {
+/// Mortar contact as its table says.
+fn integrated(spec: &ContactSpec, mortar: Mortar) -> Mortar {
+    let mortar = mortar.integrated(match spec.quadrature {
         case::Quadrature::Segments => Quadrature::Segments,
         case::Quadrature::Fixed => Quadrature::Fixed,
-    }
+    });
+    if spec.enforcement == case::Enforcement::Penalty { mortar.with_springs() } else { mortar }
 }
 
 /// Nodes that belong to none of these sides.

@@ -21,6 +21,8 @@ pub(super) struct Measured {
 #[derive(Debug, Default)]
 pub(super) struct Faced {
     pub(super) points: Vec<Measured>,
+    /// What the motion of borders adds, with the area 1.
+    pub(super) borders: Vec<Measured>,
     /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,
     /// For each polynomial the one whose multiplier carries it.

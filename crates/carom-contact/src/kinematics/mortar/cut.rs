@@ -10,9 +10,8 @@
 //!
 //! on which both have the same gap, and at an end or a kink of more than 30° the normal (x − y_v)·t
 //! = 0. What lies beyond an end has no partner and does not count. The gap is continuous at the
-//! joints, so that the derivatives of the weighted gap need not account for their motion; at an end
-//! they leave out what the motion of the end adds, the gap there times its path, which is zero in
-//! contact.
+//! joints, so that the derivatives of the weighted gap need not account for their motion; that of
+//! an end is in `border.rs`.
 
 use carom_algebra::Vector;
 
@@ -41,6 +40,8 @@ pub(super) struct Region {
     start: [Vector<2>; 2],
     /// A line at its end: a point on it, and the direction away from the facet.
     end: [Vector<2>; 2],
+    /// Whether nothing continues it smoothly, at the start and at the end.
+    is_free: [bool; 2],
     normal: Vector<2>,
     length: f64,
 }
@@ -56,11 +57,13 @@ impl Region {
             let [one, other] = if forward { [facet, next] } else { [next, facet] };
             primary.is_blunt(one, other, y).then_some(next)
         };
-        let before = blunt(false).map_or(Vector::ZERO, |facet| unit(primary.facet(facet).at(y, 1.0).tangent));
-        let after = blunt(true).map_or(Vector::ZERO, |facet| unit(primary.facet(facet).at(y, -1.0).tangent));
+        let [previous, next] = [false, true].map(blunt);
+        let before = previous.map_or(Vector::ZERO, |facet| unit(primary.facet(facet).at(y, 1.0).tangent));
+        let after = next.map_or(Vector::ZERO, |facet| unit(primary.facet(facet).at(y, -1.0).tangent));
         Self {
             start: [first.position, before + unit(first.tangent)],
             end: [last.position, unit(last.tangent) + after],
+            is_free: [previous.is_none(), next.is_none()],
             normal: middle.normal,
             length: (last.position - first.position).norm(),
         }
@@ -133,13 +136,33 @@ pub(super) struct Facing {
     pub(super) points: Vec<Opposed>,
     /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,
+    /// Places at which the primary ends.
+    pub(super) borders: Vec<Crossing>,
+}
+
+/// A place on a secondary facet over an end of a facet of the primary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    /// Coordinate on the secondary facet.
+    pub(super) xi: f64,
+    /// The facet that ends there, and its coordinate, −1 or 1.
+    pub(super) facet: usize,
+    pub(super) eta: f64,
+    /// What the points before and after the place face.
+    pub(super) sides: [Option<Opposed>; 2],
+}
+
+/// A part of a secondary facet with the facet of the primary that it faces, if there is one.
+struct Piece<'a> {
+    ends: [f64; 2],
+    faced: Option<(usize, &'a Region)>,
 }
 
 impl Facing {
     /// A facet of which all points face a rigid obstacle.
     pub(super) fn whole(rule: &Rule) -> Self {
         let points = rule.points.iter().map(|&[xi, weight]| Opposed { xi, weight, facet: 0, eta: 0.0 });
-        Self { points: points.collect(), ends: Some([-1.0, 1.0]) }
+        Self { points: points.collect(), ends: Some([-1.0, 1.0]), borders: Vec::new() }
     }
 }
 
@@ -208,19 +231,52 @@ impl Opposites<'_> {
         let mut ends: Vec<f64> = parts.iter().flat_map(|part| part.ends).collect();
         ends.sort_unstable_by(f64::total_cmp);
         let mut found = Facing::default();
+        let mut pieces = Vec::new();
         for piece in ends.windows(2).filter(|piece| piece[1] - piece[0] > ROUND_OFF) {
             let middle = 0.5 * (piece[0] + piece[1]);
             let half = 0.5 * (piece[1] - piece[0]);
             let over = parts.iter().filter(|part| part.ends[0] <= middle && middle <= part.ends[1]);
             let over = over.map(|part| (part.facet, part.region));
-            let Some((facet, region)) = self.nearest(own, over, middle) else { continue };
+            let faced = self.nearest(own, over, middle);
+            pieces.push(Piece { ends: [piece[0], piece[1]], faced });
+            let Some((facet, region)) = faced else { continue };
             for [at, weight] in rule {
                 let at = [middle + half * at, half * weight];
                 found.points.extend(self.opposed(own, facet, region, at));
             }
             found.ends = Some([found.ends.map_or(piece[0], |ends| ends[0]), piece[1]]);
         }
+        found.borders = self.borders(own, &parts, &pieces);
         found
+    }
+
+    /// The places between pieces, or beside the first and the last one, at which a facet of the
+    /// primary ends that nothing continues.
+    fn borders(&self, own: Facet, parts: &[Part], pieces: &[Piece]) -> Vec<Crossing> {
+        let mut borders = Vec::new();
+        for part in parts {
+            for end in [0, 1] {
+                let xi = part.ends[end];
+                // The secondary side is not traversed in the direction of the primary.
+                let is_start = (own.at(self.y, xi).tangent.dot(&part.region.start[1]) > 0.0) == (end == 0);
+                let is_free = part.region.is_free[usize::from(!is_start)];
+                if xi.abs() >= 1.0 || !is_free {
+                    continue;
+                }
+                let beside = |end: usize| {
+                    let piece = pieces.iter().find(|piece| (piece.ends[end] - xi).abs() <= ROUND_OFF)?;
+                    let (facet, region) = piece.faced?;
+                    self.opposed(own, facet, region, [xi, 0.0])
+                };
+                let sides = [beside(1), beside(0)];
+                let facets = sides.map(|side| side.map(|opposed| opposed.facet));
+                if facets[0] != facets[1] {
+                    let eta = if is_start { -1.0 } else { 1.0 };
+                    borders.push(Crossing { xi, facet: part.facet, eta, sides });
+                }
+            }
+        }
+        borders
     }
 
     fn facing_at_points(&self, own: Facet, rule: &[[f64; 2]]) -> Facing {

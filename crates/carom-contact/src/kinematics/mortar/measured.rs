@@ -7,9 +7,11 @@
 
 use std::sync::PoisonError;
 
+use super::border::{Border, End};
 use super::cache::{Faced, Measured};
-use super::cut::{Facing, Opposed};
+use super::cut::{Crossing, Facing, Opposed};
 use super::multipliers::{MOST, Part, bernstein};
+use super::opposite::{Opposite, PointGap};
 use super::sides::Mortar;
 use super::turned::{Own, Turned};
 use crate::kinematics::projection::Facet;
@@ -40,10 +42,11 @@ impl Mortar {
                 continue;
             }
             let own = self.secondary.facet(facet);
-            let Facing { points, ends } = facing(own);
+            let Facing { points, ends, borders } = facing(own);
+            let borders = borders.iter().filter_map(|at| self.border(own, at, y)).collect();
             let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
             let points = measured.filter(|point| point.area > 0.0).collect();
-            faced.push(Faced { points, ends, carriers: [0; MOST] });
+            faced.push(Faced { points, borders, ends, carriers: [0; MOST] });
         }
         let carriers = self.carriers(&faced);
         faced.iter_mut().zip(carriers).for_each(|(faced, carriers)| faced.carriers = carriers);
@@ -58,11 +61,33 @@ impl Mortar {
         Some(Measured { at, gap, area, turned })
     }
 
+    /// What the motion of a place at which the primary ends adds to the derivatives.
+    fn border(&self, own: Facet, at: &Crossing, y: Places) -> Option<Measured> {
+        let Opposite::Side(primary) = &self.opposite else { return None };
+        let mut jumps = [0.0; 2];
+        for (side, sign) in at.sides.into_iter().zip([1.0, -1.0]) {
+            let Some(side) = side.and_then(|side| self.measured(own, Opposed { weight: 1.0, ..side }, y))
+            else {
+                continue;
+            };
+            jumps[0] += sign * side.area * side.gap.distance();
+            jumps[1] += sign * side.area;
+        }
+        let facet = primary.surface.facet(at.facet);
+        let end = End { at: facet.at(y, at.eta), shape: &facet.shape.at(at.eta), nodes: facet.nodes.len() };
+        let border = Border::new(&own.at(y, at.xi), &end, jumps)?;
+        let at = Opposed { xi: at.xi, weight: 0.0, facet: at.facet, eta: at.eta };
+        Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None })
+    }
+
     /// For each facet and polynomial the polynomial that carries it: itself, if enough of its
     /// multiplier is covered, or else the nearest one on the facet of which that holds, or the one
     /// that is covered most.
     fn carriers(&self, faced: &[Faced]) -> Vec<[usize; MOST]> {
         let mut carriers = vec![std::array::from_fn(|number| number); faced.len()];
+        if self.springs {
+            return carriers;
+        }
         let mut covers = vec![[0.0; MOST]; faced.len()];
         for multiplier in &self.multipliers {
             let of_part = |part: &Part| -> f64 {

@@ -6,6 +6,7 @@
 //! window only says over which nodes its row extends; the points of quadrature follow from
 //! positions alone.
 
+mod border;
 mod cache;
 mod cut;
 mod field;
@@ -35,7 +36,7 @@ impl Mortar {
     fn cover_at_start(&self, multiplier: usize) -> f64 {
         let Some(all) = self.opposite.whole(multiplier) else { return 0.0 };
         let samples = self.samples(&all, self.reference()).unwrap_or_default();
-        samples.iter().map(|sample| sample.share).sum()
+        samples.iter().filter(|sample| !sample.is_border()).map(|sample| sample.share).sum()
     }
 
     /// Weighted gap of a multiplier in the reference configuration, without what it keeps.
@@ -53,7 +54,7 @@ impl Mortar {
     /// Moves the recorded contact point of a pair to that of the sample on the middle facet of its
     /// window that weighs most.
     fn mark(pair: &mut Pair, samples: &[Sample]) {
-        let of_facet = samples.iter().filter(|sample| sample.facet == pair.facet);
+        let of_facet = samples.iter().filter(|sample| sample.facet == pair.facet && !sample.is_border());
         let heaviest = of_facet.max_by(|a, b| a.share.total_cmp(&b.share));
         pair.xi = heaviest.map_or(pair.xi, |sample| sample.eta.clamp(-1.0, 1.0));
     }

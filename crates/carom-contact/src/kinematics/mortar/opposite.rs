@@ -2,6 +2,7 @@
 
 use carom_algebra::Vector;
 
+use super::border::Border;
 use super::cut::{Facing, Opposed, Opposites, Region, Rule};
 use crate::kinematics::NodeToObstacle;
 use crate::kinematics::facets::Facets;
@@ -37,6 +38,8 @@ pub(super) struct Primary {
 pub(super) enum PointGap {
     Facet(Gap, usize),
     Obstacle(ObstacleGap),
+    /// No gap, but what the motion of a border adds to the derivatives.
+    Border(Border),
 }
 
 impl Primary {
@@ -46,7 +49,7 @@ impl Primary {
         order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
         let siblings = (0..surface.all()).filter(|&facet| surface.is_of_sibling(facet));
         let siblings = siblings.filter(|&facet| !surface.is_mirror(facet)).collect();
-        Self { order, place, siblings, surface }
+        Self { surface, order, place, siblings }
     }
 
     /// Some facets at positions `y`, with those of the other contacts.
@@ -155,6 +158,7 @@ impl PointGap {
         match self {
             Self::Facet(gap, _) => gap.distance,
             Self::Obstacle(gap) => gap.distance,
+            Self::Border(_) => 0.0,
         }
     }
 
@@ -163,6 +167,7 @@ impl PointGap {
         match self {
             Self::Facet(gap, _) => gap.at.normal,
             Self::Obstacle(gap) => flat(gap.direction()),
+            Self::Border(_) => Vector::ZERO,
         }
     }
 
@@ -171,6 +176,7 @@ impl PointGap {
         match self {
             Self::Facet(_, nodes) => 1 + nodes,
             Self::Obstacle(gap) => gap.count,
+            Self::Border(border) => border.count,
         }
     }
 
@@ -181,15 +187,17 @@ impl PointGap {
     pub(super) fn unless_regular(&self, node: usize, pair: &Pair) -> Result<(), ContactError> {
         match self {
             Self::Facet(gap, _) => ContactError::unless_regular(node, pair, gap.a),
-            Self::Obstacle(_) => Ok(()),
+            Self::Obstacle(_) | Self::Border(_) => Ok(()),
         }
     }
 
-    /// Calls a function with the gradients of the gap by the point and by each node opposite.
-    pub(super) fn gradient(&self, mut of: impl FnMut(usize, Vector<2>)) {
+    /// Calls a function with the gradients of the gap by the point and by each node opposite;
+    /// `kept`: an initial depth by which gaps are larger.
+    pub(super) fn gradient(&self, kept: f64, mut of: impl FnMut(usize, Vector<2>)) {
         match self {
             Self::Facet(gap, nodes) => gap.gradient(*nodes).enumerate().for_each(|(p, v)| of(p, v)),
             Self::Obstacle(gap) => gap.gradient().map(flat).enumerate().for_each(|(p, v)| of(p, v)),
+            Self::Border(border) => border.gradient(kept, of),
         }
     }
 
@@ -199,6 +207,7 @@ impl PointGap {
         match self {
             Self::Facet(gap, nodes) => gap.slip(*nodes).enumerate().for_each(|(p, v)| of(p, v)),
             Self::Obstacle(gap) => gap.row(gap.tangent()).map(flat).enumerate().for_each(|(p, v)| of(p, v)),
+            Self::Border(_) => {}
         }
     }
 
@@ -208,6 +217,7 @@ impl PointGap {
         match self {
             Self::Facet(gap, nodes) => gap.curvature_into(*nodes, 2, matrix),
             Self::Obstacle(gap) => gap.curvature_into(2, matrix),
+            Self::Border(_) => matrix.fill(0.0),
         }
     }
 
@@ -216,6 +226,7 @@ impl PointGap {
         match self {
             Self::Facet(gap, nodes) => gap.slip_derivative_into(*nodes, matrix),
             Self::Obstacle(gap) => gap.slip_derivative_into(2, gap.tangent(), matrix),
+            Self::Border(_) => matrix.fill(0.0),
         }
     }
 }

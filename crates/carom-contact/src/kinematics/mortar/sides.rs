@@ -22,6 +22,8 @@ pub struct Mortar {
     /// Degree of the pressure.
     pub(super) degree: usize,
     pub(super) rule: Rule,
+    /// Whether springs press in place of multipliers.
+    pub(super) springs: bool,
     pub(super) reference: Vec<f64>,
     /// Nodes on whose positions gaps depend.
     pub(super) surface: Vec<usize>,
@@ -82,12 +84,20 @@ impl Mortar {
             opposite,
             multipliers,
             rule,
+            springs: false,
             reference: reference.to_vec(),
             kept: Vec::new(),
             kept_depths: Vec::new(),
             sides,
             sides_kept: Vec::new(),
         }
+    }
+
+    /// With springs in place of multipliers: where little of a coefficient's area has a partner, its
+    /// pressure is no larger than elsewhere, and no neighbour carries it.
+    #[must_use]
+    pub fn with_springs(self) -> Self {
+        Self { springs: true, ..self }
     }
 
     /// With another quadrature than in parts.

@@ -125,7 +125,7 @@ impl Turned {
         let mut hessian = [0.0; 4 * MOST * MOST];
         of.curvature_into(&mut hessian);
         let mut gradient = [Vector::ZERO; MOST];
-        of.gradient(|p, slope| gradient[p] = slope);
+        of.gradient(0.0, |p, slope| gradient[p] = slope);
         let [first, second] = self.rates;
         for row in 0..size {
             for column in 0..size {

@@ -59,15 +59,20 @@ struct Placed {
 type Weighted = (usize, f64);
 
 impl Sample {
-    /// The gap, with the initial depth that is kept.
+    /// The gap, with the initial depth that is kept; 0 at a border.
     pub(super) fn distance(&self) -> f64 {
-        self.gap.distance() + self.kept
+        if self.is_border() { 0.0 } else { self.gap.distance() + self.kept }
+    }
+
+    /// Whether it only adds to the derivatives.
+    pub(super) fn is_border(&self) -> bool {
+        matches!(self.gap, PointGap::Border(_))
     }
 
     /// Calls a function with the gradients of the weighted gap of the point, over its weight, by
     /// the point, the nodes opposite, and the tangent.
     pub(super) fn gradient(&self, mut of: impl FnMut(usize, Vector<2>)) {
-        self.gap.gradient(&mut of);
+        self.gap.gradient(self.kept, &mut of);
         if let Some(turned) = &self.turned {
             turned.gradient(self.distance(), of);
         }
@@ -178,10 +183,12 @@ impl Mortar {
             let mut samples = Vec::new();
             for &Part { facet, polynomial } in &multiplier.parts {
                 let shape = self.secondary.facet(facet).shape;
-                let Faced { points, carriers, .. } = &of_facets[facet];
+                let Faced { points, borders, carriers, .. } = &of_facets[facet];
                 let carried: Vec<usize> =
                     (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
-                for Measured { at, gap, area, turned } in points.iter().filter(|_| !carried.is_empty()) {
+                for Measured { at, gap, area, turned } in
+                    points.iter().chain(borders).filter(|_| !carried.is_empty())
+                {
                     if !self.opposite.is_in_window(pair, at.facet) {
                         continue;
                     }
