@@ -7,8 +7,13 @@
 //!
 //! where ∂x is that at a fixed ξ. With the gap there, its motion adds g ∂ξ to the gradient of the
 //! integral, with a negative sign where the primary begins. Without it, forces would have no
-//! potential where bodies overhang, and with springs they would create energy. Newton's method
-//! leaves out the second derivative: where bodies touch, g is zero.
+//! potential where bodies overhang, and with springs they would create energy. The second derivative
+//!
+//! ```text
+//! ∂ξ ⊗ ∇g + ∇g ⊗ ∂ξ + g' ∂ξ ⊗ ∂ξ + g ∂²ξ,    g' = ∇_x g·x',
+//! ```
+//!
+//! which only Newton's method uses, leaves out ∂²ξ, and ∇g if it is by other nodes than ∂ξ.
 
 use carom_algebra::Vector;
 use carom_solid::LineShape;
@@ -16,7 +21,7 @@ use carom_solid::LineShape;
 use crate::kinematics::projection::FacetPoint;
 
 /// Most vectors on which the place depends: the point and the nodes of a facet.
-const MOST: usize = 5;
+pub(super) const MOST: usize = 5;
 
 /// The gap that enters the integral at a border, with the derivatives of the border's place.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +31,9 @@ pub(super) struct Border {
     pub(super) count: usize,
     /// Jump of the weighted gap over the border, and of the weight.
     jumps: [f64; 2],
+    /// Gradient of the former, if it is by the same nodes, and its derivative by ξ.
+    of_jump: [Vector<2>; MOST],
+    rate: f64,
 }
 
 /// The end of a facet of the primary.
@@ -38,8 +46,13 @@ pub(super) struct End<'a> {
 impl Border {
     /// The border at a point of the secondary side over an end of the primary; none where the
     /// secondary side runs along the line on which it lies. `jumps`: that of the weighted gap, and
-    /// that of the weight.
-    pub(super) fn new(point: &FacetPoint, end: &End, jumps: [f64; 2]) -> Option<Self> {
+    /// that of the weight; `of_jump`: gradient of the former.
+    pub(super) fn new(
+        point: &FacetPoint,
+        end: &End,
+        jumps: [f64; 2],
+        of_jump: [Vector<2>; MOST],
+    ) -> Option<Self> {
         let along = end.at.tangent * end.at.measure.recip();
         let rate = point.tangent.dot(&along);
         if rate == 0.0 {
@@ -52,7 +65,8 @@ impl Border {
             let of_node = along * end.shape.values[node] - across * end.shape.first[node];
             slopes[1 + node] = of_node * rate.recip();
         }
-        Some(Self { slopes, count: 1 + end.nodes, jumps })
+        let rate = of_jump[0].dot(&point.tangent);
+        Some(Self { slopes, count: 1 + end.nodes, jumps, of_jump, rate })
     }
 
     /// Calls a function with the gradients of the integral by the point and the nodes of the
@@ -60,5 +74,19 @@ impl Border {
     pub(super) fn gradient(&self, kept: f64, mut of: impl FnMut(usize, Vector<2>)) {
         let jump = self.jumps[0] + kept * self.jumps[1];
         (0..self.count).for_each(|p| of(p, self.slopes[p] * jump));
+    }
+
+    /// Overwrites the first entries of a matrix with the second derivative by the point and the
+    /// nodes of the facet, two components each, row-major.
+    pub(super) fn curvature_into(&self, matrix: &mut [f64]) {
+        let size = 2 * self.count;
+        for (row, values) in matrix[..size * size].chunks_exact_mut(size).enumerate() {
+            for (column, value) in values.iter_mut().enumerate() {
+                let of = |vectors: &[Vector<2>], at: usize| vectors[at / 2].0[at % 2];
+                let [of_row, of_column] = [row, column].map(|at| of(&self.slopes, at));
+                let mixed = of_row * of(&self.of_jump, column) + of(&self.of_jump, row) * of_column;
+                *value = mixed + self.rate * of_row * of_column;
+            }
+        }
     }
 }

@@ -7,7 +7,9 @@
 
 use std::sync::PoisonError;
 
-use super::border::{Border, End};
+use carom_algebra::Vector;
+
+use super::border::{self, Border, End};
 use super::cache::{Faced, Measured};
 use super::cut::{Crossing, Facing, Opposed};
 use super::multipliers::{MOST, Part, bernstein};
@@ -65,6 +67,7 @@ impl Mortar {
     fn border(&self, own: Facet, at: &Crossing, y: Places) -> Option<Measured> {
         let Opposite::Side(primary) = &self.opposite else { return None };
         let mut jumps = [0.0; 2];
+        let mut of_jump = [Vector::ZERO; border::MOST];
         for (side, sign) in at.sides.into_iter().zip([1.0, -1.0]) {
             let Some(side) = side.and_then(|side| self.measured(own, Opposed { weight: 1.0, ..side }, y))
             else {
@@ -72,10 +75,13 @@ impl Mortar {
             };
             jumps[0] += sign * side.area * side.gap.distance();
             jumps[1] += sign * side.area;
+            if side.at.facet == at.facet {
+                side.gap.gradient(0.0, |p, slope| of_jump[p] += slope * (sign * side.area));
+            }
         }
         let facet = primary.surface.facet(at.facet);
         let end = End { at: facet.at(y, at.eta), shape: &facet.shape.at(at.eta), nodes: facet.nodes.len() };
-        let border = Border::new(&own.at(y, at.xi), &end, jumps)?;
+        let border = Border::new(&own.at(y, at.xi), &end, jumps, of_jump)?;
         let at = Opposed { xi: at.xi, weight: 0.0, facet: at.facet, eta: at.eta };
         Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None })
     }

@@ -217,7 +217,7 @@ impl PointGap {
         match self {
             Self::Facet(gap, nodes) => gap.curvature_into(*nodes, 2, matrix),
             Self::Obstacle(gap) => gap.curvature_into(2, matrix),
-            Self::Border(_) => matrix.fill(0.0),
+            Self::Border(border) => border.curvature_into(matrix),
         }
     }
 
