@@ -256,6 +256,10 @@ impl Placed<'_> {
         order.sort_by_key(|curve| (!curve.apart, curve.thin, curve.chosen));
         for curve in order {
             let points: Vec<[f64; 2]> = curve.x.iter().zip(&curve.y).map(|(x, y)| self.to(*x, *y)).collect();
+            // On a logarithmic axis an interval that contains zero has no lower end.
+            let end = |x: f64, y: f64| self.to(x, y.max(f64::MIN_POSITIVE));
+            let intervals = curve.x.iter().zip(&curve.intervals);
+            curve.bars(out, intervals.map(|(x, [low, high])| [end(*x, *low), end(*x, *high)]), id);
             curve.draw(out, &points, id, &|point| frame.contains(point));
         }
         if let Some((level, word)) = &pane.floor {

@@ -33,7 +33,8 @@ impl Plot {
         Figure::new(&self.name, &self.caption, pictures).with_table(self.csv())
     }
 
-    /// The values of all curves; the edges of a band are the curves `NAME, low` and `NAME, high`.
+    /// The values of all curves; the edges of a band and the ends of
+    /// intervals are the curves `NAME, low` and `NAME, high`.
     pub(crate) fn csv(&self) -> String {
         let mut table = Table::default();
         for pane in &self.panes {
@@ -43,6 +44,11 @@ impl Plot {
             }
             for curve in &pane.curves {
                 table.add(pane.name(), &curve.label, &curve.x, &curve.y);
+                if !curve.intervals.is_empty() {
+                    let ends = |k: usize| curve.intervals.iter().map(|ends| ends[k]).collect::<Vec<f64>>();
+                    table.add(pane.name(), &format!("{}, low", curve.label), &curve.x, &ends(0));
+                    table.add(pane.name(), &format!("{}, high", curve.label), &curve.x, &ends(1));
+                }
             }
         }
         table.text()

@@ -14,6 +14,7 @@ mod error;
 mod expects;
 mod explained;
 mod file;
+mod goals;
 mod jobs;
 mod matched;
 mod memory;

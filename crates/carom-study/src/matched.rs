@@ -22,7 +22,7 @@ use carom_record::metrics::cost;
 use carom_record::study::{Arm, StudyManifest, sets_step};
 use carom_record::{Manifest, RecordError, Status, json};
 use carom_run::case::Case;
-use carom_run::recording::{self, Progress};
+use carom_run::recording::{self, Progress, RunError};
 use serde::{Deserialize, Serialize};
 
 use crate::compute::{case_of, compute};
@@ -250,7 +250,16 @@ fn pilot(
     let settled = pilot.settled.unwrap_or_default();
     let from = folder.join((settled + 1).to_string());
     let to = directory.join(&arm.directory);
+    let accepted = &pilot.trials[settled];
     if !to.exists() {
+        // The record of an accepted trial may have been removed together with that of its arm.
+        if !from.is_dir() {
+            let ended = run_of(manifest, i, accepted.steps, &from, progress, stop);
+            let ended = ended?.map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })?;
+            if ended.status == Status::Stopped {
+                return Ok((ended, accepted.steps, None));
+            }
+        }
         fs::rename(&from, &to).map_err(RecordError::io("move", &from))?;
     }
     // The costs of the other trials are in pilot.json; their records are removed to save space.
@@ -261,13 +270,12 @@ fn pilot(
     }
     let run = Manifest::read(&to)?;
     let wall = run.timings.get("total").copied().unwrap_or(0.0);
-    let accepted = &pilot.trials[settled];
     let share = accepted.cost.zip(pilot.budget).map(|(cost, budget)| cost / budget);
     Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
-/// Starts or resumes one pilot run of `steps` steps; none if the time step is not possible, for
-/// example above the stable step of an explicit scheme.
+/// One pilot run of `steps` steps; none if the time step is not possible, for example above the
+/// stable step of an explicit scheme.
 fn trial(
     manifest: &StudyManifest,
     i: usize,
@@ -276,20 +284,30 @@ fn trial(
     progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Option<Ended>, StudyError> {
-    let done = if path.join("manifest.json").is_file() {
-        recording::resume(path, 1, progress, stop)
-    } else {
-        let case = case_with(manifest, i, steps)?;
-        let mut source = manifest.source_of(&manifest.arms[i]);
-        source.sets.retain(|set| !sets_step(set));
-        source.sets.push(format!("time.step={:?}", case.time.step));
-        recording::run(&case, source, path, 1, progress, stop)
-    };
-    match done {
-        Ok(outcome) => Ok(Some(Ended::of(outcome))),
-        Err(recording::RunError::Case(_)) => Ok(None),
+    match run_of(manifest, i, steps, path, progress, stop)? {
+        Ok(ended) => Ok(Some(ended)),
+        Err(RunError::Case(_)) => Ok(None),
         Err(source) => Err(StudyError::Arm { arm: manifest.arms[i].name.clone(), source }),
     }
+}
+
+/// Starts or resumes a run of an arm with `steps` steps.
+fn run_of(
+    manifest: &StudyManifest,
+    i: usize,
+    steps: u64,
+    path: &Path,
+    progress: &mut (dyn FnMut(&Progress) + Send),
+    stop: &AtomicBool,
+) -> Result<Result<Ended, RunError>, StudyError> {
+    if path.join("manifest.json").is_file() {
+        return Ok(recording::resume(path, 1, progress, stop).map(Ended::of));
+    }
+    let case = case_with(manifest, i, steps)?;
+    let mut source = manifest.source_of(&manifest.arms[i]);
+    source.sets.retain(|set| !sets_step(set));
+    source.sets.push(format!("time.step={:?}", case.time.step));
+    Ok(recording::run(&case, source, path, 1, progress, stop).map(Ended::of))
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use carom_run::case::{Case, CaseError, Document};
 use crate::arms::{self, Draft};
 use crate::expects;
 use crate::file::{self, StudyFile};
+use crate::goals;
 use crate::names;
 use crate::resolved::{Base, Checked, Planned, bases, stored};
 
@@ -89,6 +90,7 @@ impl Plan {
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
         expects::overlays(&file.overlays, &known, &mut problems);
         expects::check(&file.expects, &file.overlays, &known, &mut problems);
+        goals::check(&file, &known, &mut problems);
         checked.problems(&problems)?;
         checked.end()?;
         let members = checked.members(&file, &planned)?;

@@ -172,6 +172,11 @@ impl<'s> Checked<'s> {
                 members.push(Arm { role, ..stored(&draft, directory, sets, &case) });
             }
         }
+        let is_swapped = |run: &Arm| run.role.member.is_some_and(|of| of.member.swapped);
+        let is_asked = file.ensemble.as_ref().is_some_and(|ensemble| ensemble.swapped);
+        if is_asked && self.found.is_empty() && !members.iter().any(is_swapped) {
+            self.found.push(self.study.diagnose(&no_sides()));
+        }
         Ok(members)
     }
 }
@@ -208,6 +213,16 @@ fn no_steps() -> Problem {
         "no steps of the reference are in the ratios of these factors",
         "step and mesh are refined together, and every step divides the end time",
         "choose simple ratios, for example `mesh = [1, 1.5, 2]`",
+    )
+}
+
+/// The problem that no contact of any arm has two sides that can be swapped.
+fn no_sides() -> Problem {
+    Problem::new(
+        "ensemble.swapped",
+        "no contact has sides that can be swapped",
+        "only two sides of bodies can be swapped, not a side and a rigid primary or itself",
+        "leave `swapped` out",
     )
 }
 

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
+use crate::analysis::Principal;
 use crate::catalogue::info;
 use crate::map;
 use crate::name::{Name, short};
@@ -35,6 +36,20 @@ pub struct Accuracy {
     pub damping_ratio: Option<f64>,
     /// PE of the oscillating pair.
     pub period_error: Option<f64>,
+    /// Error of the phase velocity of a wave, relative to c, in a bar of linear elements with as
+    /// many elements per wavelength as steps per period, so that c Δt = h. Masses are lumped with
+    /// explicit schemes, and consistent with the others.
+    pub dispersion: Option<f64>,
+}
+
+/// Largest values in the first steps of a stiff mode that is released from rest, Ω = 10: they are 1
+/// in the exact motion (H. M. Hilber and T. J. R. Hughes 1978).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Overshoot {
+    /// Largest |u|/u₀.
+    pub displacement: f64,
+    /// Largest |v|/(ω u₀).
+    pub velocity: f64,
 }
 
 /// Velocity and acceleration of a dof whose position is constrained by contact.
@@ -67,6 +82,8 @@ pub struct Explanation {
     pub rho_inf: f64,
     /// At 5, 10, 20, 50 and 100 steps per period.
     pub accuracy: Vec<Accuracy>,
+    /// Overshoot of a stiff mode.
+    pub overshoot: Overshoot,
     /// What is conserved and what is not.
     pub conserves: Vec<&'static str>,
     /// Behaviour in contact.
@@ -111,6 +128,7 @@ fn explained(scheme: &Scheme, names: Vec<Name>) -> Explanation {
         a_stable: scheme.is_a_stable(),
         rho_inf: scheme.spectral_radius_at_infinity(),
         accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy(scheme, steps)).into(),
+        overshoot: overshoot(scheme),
         conserves: conserves(scheme),
         constrained: constrained(scheme),
         remarks: scheme.remarks(),
@@ -143,6 +161,7 @@ pub(crate) fn explain_kernel(kernel: &dyn Kernel, name: &Name) -> Explanation {
         a_stable: sweep().all(|rho| rho <= 1.0 + 1e-7),
         rho_inf,
         accuracy: [5, 10, 20, 50, 100].map(|steps| accuracy_of(kernel, steps)).into(),
+        overshoot: overshoot(kernel),
         conserves: vec!["momentum: conserved exactly", energy],
         constrained: constrained_of(kernel),
         remarks: kernel.notes().iter().map(ToString::to_string).collect(),
@@ -158,7 +177,36 @@ pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accurac
         spectral_radius: map::spectral_radius(kernel, omega_dt),
         damping_ratio: pair.map(|pair| pair.damping_ratio),
         period_error: pair.map(|pair| pair.period_error),
+        dispersion: dispersion(steps_per_period, |omega_dt| map::principal(kernel, omega_dt)),
     }
+}
+
+/// Error of the phase velocity of a wave with n linear elements of consistent mass per wavelength,
+/// at c Δt = h: k h = ω Δt = 2π/n in the exact motion.
+fn dispersion(n: u32, principal: impl Fn(f64) -> Option<Principal>) -> Option<f64> {
+    let exact = TAU / f64::from(n);
+    let semi_discrete = 2.0 * (exact / 2.0).sin() * (3.0 / (2.0 + exact.cos())).sqrt();
+    let angle = semi_discrete / (1.0 + principal(semi_discrete)?.period_error);
+    Some(angle / exact - 1.0)
+}
+
+/// Steps in which overshoot is looked for, and Ω of its mode.
+const RELEASED: u32 = 10;
+const STIFF: f64 = 10.0;
+
+fn overshoot(kernel: &dyn Kernel) -> Overshoot {
+    let oscillator = Oscillator { mass: 1.0, stiffness: STIFF * STIFF, force: 0.0 };
+    let mut motion = oscillator.start(1.0, 0.0);
+    let mut before = None;
+    let mut most = Overshoot { displacement: 1.0, velocity: 0.0 };
+    for _ in 0..RELEASED {
+        let next = oscillator.step_after(kernel, 1.0, before, motion, &mut Stage::default());
+        before = kernel.two_step().then_some([next[0] - motion[0], motion[1]]);
+        most.displacement = most.displacement.max(next[0].abs());
+        most.velocity = most.velocity.max(next[1].abs() / STIFF);
+        motion = next;
+    }
+    most
 }
 
 /// The behaviour of a constrained dof, by the map with its position constrained: v₀ = 1 at the
@@ -200,6 +248,7 @@ pub(crate) fn accuracy(scheme: &Scheme, steps_per_period: u32) -> Accuracy {
         spectral_radius: scheme.spectral_radius(omega_dt),
         damping_ratio: pair.map(|pair| pair.damping_ratio),
         period_error: pair.map(|pair| pair.period_error),
+        dispersion: dispersion(steps_per_period, |omega_dt| scheme.principal(omega_dt)),
     }
 }
 

@@ -14,17 +14,22 @@ pub(crate) fn cell(x: Option<f64>, scale: f64) -> String {
     }
 }
 
-/// Spectral radius, damping ratio and period error at several steps per period.
+/// Spectral radius, damping ratio, period error and dispersion at several steps per period.
 pub(crate) fn accuracy_table(f: &mut Formatter, rows: &[Accuracy]) -> Result {
-    writeln!(f, "\n  {:>6}  {:>10}  {:>15}  {:>14}", "T/Δt", "ρ", "damping ratio ξ", "period error %")?;
+    let heads = ["T/Δt", "ρ", "damping ratio ξ", "period error %", "dispersion %"];
+    let [steps, radius, damping, period, dispersion] = heads;
+    writeln!(f, "\n  {steps:>6}  {radius:>10}  {damping:>15}  {period:>14}  {dispersion:>12}")?;
     rows.iter().try_for_each(|row| {
-        let (damping, period) = (cell(row.damping_ratio, 1.0), cell(row.period_error, 100.0));
-        writeln!(
-            f,
-            "  {:>6}  {:>10.6}  {damping:>15}  {period:>14}",
-            row.steps_per_period, row.spectral_radius
-        )
-    })
+        let steps = row.steps_per_period;
+        let radius = row.spectral_radius;
+        let damping = cell(row.damping_ratio, 1.0);
+        let period = cell(row.period_error, 100.0);
+        let dispersion = cell(row.dispersion, 100.0);
+        writeln!(f, "  {steps:>6}  {radius:>10.6}  {damping:>15}  {period:>14}  {dispersion:>12}")
+    })?;
+    let words = "dispersion: error of the phase velocity of a wave in a bar of linear elements, with as many \
+                 elements per wavelength as steps per period";
+    write_wrapped(f, words)
 }
 
 /// An indented paragraph of at most 100 columns; continued lines are indented further.

@@ -29,7 +29,7 @@ pub use analysis::Principal;
 pub use catalogue::scheme;
 pub use cubic::Root;
 pub use error::SchemeError;
-pub use explain::{Accuracy, Constrained, Convention, Explanation, explain};
+pub use explain::{Accuracy, Constrained, Convention, Explanation, Overshoot, explain};
 pub use explained::Explained;
 pub use explicit::Explicit;
 pub use integrator::Integrator;

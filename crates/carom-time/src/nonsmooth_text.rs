@@ -80,7 +80,14 @@ fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {
         spectral_radius: scheme.spectral_radius(omega_dt),
         damping_ratio: Some(damping),
         period_error: Some(omega_dt / angle - 1.0),
+        dispersion: wave(scheme, omega_dt).map(|angle| angle / omega_dt - 1.0),
     })
+}
+
+/// Angle per step of a wave in a bar of linear elements with lumped mass whose exact angle is
+/// `omega_dt`, at c Δt = h.
+fn wave(scheme: &Nonsmooth, omega_dt: f64) -> Option<f64> {
+    Some(scheme.oscillation(2.0 * (omega_dt / 2.0).sin())?.1)
 }
 
 impl Display for NonsmoothExplanation {

@@ -3,7 +3,7 @@ use std::fmt::{Display, Formatter, Result};
 
 use serde::Serialize;
 
-use crate::explain::{Accuracy, Explanation};
+use crate::explain::{Accuracy, Explanation, Overshoot};
 use crate::explained::Explained;
 use crate::layout::{accuracy_table, cell, write_wrapped};
 use crate::name::short;
@@ -52,6 +52,13 @@ impl Display for Explanation {
             cell(Some(self.rho_inf), 1.0)
         )?;
         accuracy_table(f, &self.accuracy)?;
+        let Overshoot { displacement, velocity } = self.overshoot;
+        let largest = [displacement, velocity].map(|value| cell(Some(value), 1.0));
+        let overshoot = format!(
+            "a mode of Ω = 10 released from rest reaches {} u₀ and {} ω u₀ within ten steps",
+            largest[0], largest[1]
+        );
+        list(f, "overshoot", &[overshoot])?;
         list(f, "conservation", &self.conserves)?;
         list(f, "a dof constrained by contact", &[&self.constrained.text])?;
         list(f, "remarks", &self.remarks)?;

@@ -6,7 +6,9 @@
 //! ```
 //!
 //! Both have limits under refinement of step and mesh, unlike the total variation of a stress or a
-//! contact force. Without a window, ⟨e⟩ = e.
+//! contact force. Windows are cut at the ends of the common span. Without a window, ⟨e⟩ = e.
+
+use std::ops::Range;
 
 use super::samples::{at, integral};
 
@@ -17,6 +19,15 @@ const PER_WINDOW: f64 = 8.0;
 /// Parts of a row; no simple fraction, so that an oscillation from row to row is seen at all
 /// phases.
 const PER_ROW: f64 = 1.373;
+
+/// Instants at which errors are sampled.
+const SAMPLES: usize = 512;
+
+/// Window of an average, and the span within which it stays.
+struct Around {
+    window: f64,
+    common: Range<f64>,
+}
 
 /// Components of a vector quantity over time, with their integrals.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -71,41 +82,68 @@ impl<'a> Signal<'a> {
         Some(sums[row] + mean * (time - self.times[row]))
     }
 
-    /// Value and average of a component at a time; the window is cut at the ends of the record.
-    fn around(&self, component: usize, time: f64, window: f64) -> Option<[f64; 2]> {
+    /// Value of a component at a time, and its average over a span around it.
+    fn around(&self, component: usize, time: f64, span: &Range<f64>) -> Option<[f64; 2]> {
         let value = at(self.times, self.values[component], time)?;
-        let from = (time - window / 2.0).max(*self.times.first()?);
-        let to = (time + window / 2.0).min(*self.times.last()?);
-        if to <= from {
+        if span.is_empty() {
             return Some([value; 2]);
         }
-        Some([value, (self.sum(component, to)? - self.sum(component, from)?) / (to - from)])
+        let change = self.sum(component, span.end)? - self.sum(component, span.start)?;
+        Some([value, change / (span.end - span.start)])
+    }
+
+    /// The span that two signals with the same components have in common.
+    fn common(&self, other: &Self) -> Option<Range<f64>> {
+        let first = self.times.first()?.max(*other.times.first()?);
+        let last = self.times.last()?.min(*other.times.last()?);
+        let is_alike = !self.values.is_empty() && self.values.len() == other.values.len();
+        (first < last && is_alike).then_some(first..last)
+    }
+
+    /// Difference of a component from that of another signal at a time, and its average; the window
+    /// is cut at the ends of the common span, as one of the records may go on for longer.
+    fn off(&self, other: &Self, component: usize, time: f64, around: &Around) -> Option<[f64; 2]> {
+        let half = around.window / 2.0;
+        let span = (time - half).max(around.common.start)..(time + half).min(around.common.end);
+        let own = self.around(component, time, &span)?;
+        let known = other.around(component, time, &span)?;
+        Some([own[0] - known[0], own[1] - known[1]])
     }
 
     /// Distance from another signal with the same components; none if they have no span in common.
     pub fn distance(&self, other: &Self, window: f64) -> Option<Distance> {
-        let first = self.times.first()?.max(*other.times.first()?);
-        let last = self.times.last()?.min(*other.times.last()?);
-        if last <= first || self.values.is_empty() || self.values.len() != other.values.len() {
-            return None;
-        }
-        let of_windows = if window > 0.0 { PER_WINDOW * (last - first) / window } else { 0.0 };
+        let common = self.common(other)?;
+        let length = common.end - common.start;
+        let of_windows = if window > 0.0 { PER_WINDOW * length / window } else { 0.0 };
         let of_rows = PER_ROW * self.times.len().max(other.times.len()) as f64;
         let parts = of_windows.max(of_rows).ceil().clamp(PARTS.0, PARTS.1);
+        let around = Around { window, common };
         let mut sums = [0.0; 2];
         for k in 0..parts as usize {
-            let time = first + (k as f64 + 0.5) / parts * (last - first);
+            let time = around.common.start + (k as f64 + 0.5) / parts * length;
             for component in 0..self.values.len() {
-                let [value, mean] = self.around(component, time, window)?;
-                let [known, known_mean] = other.around(component, time, window)?;
-                let error = value - known;
-                let smooth = mean - known_mean;
+                let [error, smooth] = self.off(other, component, time, &around)?;
                 sums[0] += smooth * smooth;
                 sums[1] += (error - smooth).powi(2);
             }
         }
         let [smooth, rough] = sums.map(|sum| (sum / parts).sqrt());
         Some(Distance { smooth, rough })
+    }
+
+    /// Averaged differences from another signal at even instants of its span, zero after the end of
+    /// this one. Their root of the sum of squares is the smooth distance, up to the sampling.
+    pub fn errors(&self, other: &Self, window: f64) -> Option<Vec<f64>> {
+        let around = Around { window, common: self.common(other)? };
+        let first = *other.times.first()?;
+        let length = other.times.last()? - first;
+        let count = SAMPLES as f64;
+        let at = |k: usize| first + (k as f64 + 0.5) / count * length;
+        let off = |(component, k): (usize, usize)| {
+            self.off(other, component, at(k), &around).map_or(0.0, |off| off[1] / count.sqrt())
+        };
+        let all = (0..self.values.len()).flat_map(|component| (0..SAMPLES).map(move |k| (component, k)));
+        Some(all.map(off).collect())
     }
 
     /// Norms of the signal itself.
@@ -166,6 +204,16 @@ mod tests {
         let found = struck.norms(0.25).unwrap();
         // ⟨F⟩ is 4 over a window of 1/4: ‖·‖² = 16/4.
         assert!((found.smooth - 2.0).abs() < 0.03, "{found:?}");
+    }
+
+    /// Exact: t has no distance from a record of t that goes on for longer.
+    #[test]
+    fn the_end_of_a_record_is_no_error() {
+        let (times, values) = sampled(100, |t| t);
+        let longer: Vec<f64> = times.iter().map(|t| 1.5 * t).collect();
+        let one = Signal::of(&times, vec![&values]);
+        let found = one.distance(&Signal::of(&longer, vec![&longer]), 0.25).unwrap();
+        assert!(found.smooth < 1e-12 && found.rough < 1e-12, "{found:?}");
     }
 
     /// An exact square pulse has a rough part, which is no fault of a history that has it too.

@@ -22,14 +22,23 @@ pub struct Deviated {
     pub after: Option<f64>,
 }
 
+/// Error of an arm in a group of columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// Norms of the error.
+    pub distance: Distance,
+    /// The error itself, sampled over time (`Signal::errors`).
+    pub errors: Vec<f64>,
+}
+
 /// An arm compared with the reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Compared {
     /// Deviations of the columns of the arm.
     pub columns: Vec<Deviated>,
-    /// Distances in the groups of the reference, in their order, each for its windows and relative
-    /// to its scale; none if the arm lacks one of the columns.
-    pub groups: Vec<Option<Vec<Distance>>>,
+    /// Errors in the groups of the reference, in their order, each for its windows and relative to
+    /// its scale; none if the arm lacks one of the columns.
+    pub groups: Vec<Option<Vec<Deviation>>>,
     /// Name of the column whose phase was compared, and its delay in the unit of time.
     pub late: Option<(String, f64)>,
 }
@@ -60,7 +69,11 @@ impl Compared {
         let groups = reference.known.iter().map(|known| {
             let own = known.group.signal(arm)?;
             let right = known.group.signal(right?)?;
-            let far = |window: &f64| Some(own.distance(&right, *window)?.relative_to(known.scale));
+            let far = |window: &f64| {
+                let distance = own.distance(&right, *window)?.relative_to(known.scale);
+                let errors = own.errors(&right, *window)?.into_iter().map(|x| x / known.scale);
+                Some(Deviation { distance, errors: errors.collect() })
+            };
             known.windows.iter().map(far).collect()
         });
         Self { groups: groups.collect(), columns, late: main }

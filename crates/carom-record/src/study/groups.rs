@@ -1,7 +1,7 @@
 //! Quantities in which runs are compared over their whole history: columns that belong to one
 //! vector or tensor of one body have one scale.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::trajectory::Trajectory;
 use crate::metrics::Signal;
@@ -76,25 +76,36 @@ impl Group {
         Some(Signal::of(&run.times, values.collect::<Option<Vec<_>>>()?))
     }
 
-    /// Scale of the errors: the largest distance of a vector of the body from its first value, or
-    /// the norm of stresses and forces. None if the quantity is zero.
+    /// Number of vectors whose components the columns are.
+    fn vectors(&self) -> usize {
+        let owners: BTreeSet<&str> =
+            self.columns.iter().filter_map(|column| Some(column.rsplit_once('.')?.0)).collect();
+        owners.len()
+    }
+
+    /// Largest distance of a vector from its first value.
+    pub(super) fn motion(&self, run: &Trajectory) -> Option<f64> {
+        let mut vectors: BTreeMap<&str, Vec<&[f64]>> = BTreeMap::new();
+        for column in &self.columns {
+            let owner = column.rsplit_once('.')?.0;
+            vectors.entry(owner).or_default().push(run.columns.get(column)?);
+        }
+        let distance = |vector: &[&[f64]], row: usize| {
+            vector.iter().map(|x| (x[row] - x[0]).powi(2)).sum::<f64>().sqrt()
+        };
+        let rows = 0..run.times.len();
+        let far = |vector: &Vec<&[f64]>| rows.clone().map(|row| distance(vector, row)).fold(0.0, f64::max);
+        vectors.values().map(far).reduce(f64::max)
+    }
+
+    /// Scale of the errors: of n vectors, √n times the largest motion of one, so that an error is
+    /// the root mean square over them; the norm of stresses and forces. None if the quantity is
+    /// zero.
     pub(super) fn scale(&self, run: &Trajectory) -> Option<f64> {
         let scale = if self.kind == Kind::Motion {
-            let mut vectors: BTreeMap<&str, Vec<&[f64]>> = BTreeMap::new();
-            for column in &self.columns {
-                let owner = column.rsplit_once('.')?.0;
-                vectors.entry(owner).or_default().push(run.columns.get(column)?);
-            }
-            let distance = |vector: &[&[f64]], row: usize| {
-                vector.iter().map(|x| (x[row] - x[0]).powi(2)).sum::<f64>().sqrt()
-            };
-            let rows = 0..run.times.len();
-            let far =
-                |vector: &Vec<&[f64]>| rows.clone().map(|row| distance(vector, row)).fold(0.0, f64::max);
-            vectors.values().map(far).fold(0.0, f64::max)
+            self.motion(run)? * (self.vectors() as f64).sqrt()
         } else {
-            let norms = self.signal(run)?.norms(0.0)?;
-            norms.smooth
+            self.signal(run)?.norms(0.0)?.smooth
         };
         (scale > 0.0).then_some(scale)
     }
@@ -123,5 +134,24 @@ mod tests {
         let error = signal(&arm).distance(&signal(&right), 0.0).unwrap().relative_to(3.0).smooth;
         assert!(error < 1e-5, "{error}");
         assert!(is_stress("B.sigma_yy") && is_stress("B.von_mises") && !is_stress("B.uy"));
+    }
+
+    /// By hand: the error of a body is that of one of its probes, however many there are of it.
+    #[test]
+    fn more_probes_do_not_change_an_error() {
+        let error = |count: usize| {
+            let names: Vec<String> = (0..count).map(|i| format!("P{i}.ux")).collect();
+            let bodies = (0..count).map(|i| (format!("P{i}"), "disc".to_owned())).collect();
+            let of = |end: f64| {
+                let columns: Vec<_> = names.iter().map(|name| (name.as_str(), [0.0, end, end])).collect();
+                run(&columns)
+            };
+            let right = of(2.0);
+            let [group] = &groups(&right, &bodies)[..] else { panic!() };
+            let arm = of(2.2);
+            let far = group.signal(&arm).unwrap().distance(&group.signal(&right).unwrap(), 0.0).unwrap();
+            far.smooth / group.scale(&right).unwrap()
+        };
+        assert!((error(4) - error(1)).abs() < 1e-12);
     }
 }

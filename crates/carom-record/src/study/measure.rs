@@ -3,7 +3,7 @@
 use super::compared::Compared;
 use super::design::Goal;
 use super::groups::Kind;
-use super::reference::{IDEAL, Known, Reference, Standing};
+use super::reference::{Known, Reference, Standing};
 use super::row::Row;
 
 /// The measure of a ranking.
@@ -20,12 +20,31 @@ pub struct Measure {
 }
 
 /// Error of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Errors {
     /// Error by which arms are ranked.
     pub(super) error: f64,
+    /// The error as a vector whose length is `error`, up to the sampling of histories.
+    pub(super) vector: Vec<f64>,
     /// Rough part of the error, of averaged quantities.
     pub(super) noise: Option<f64>,
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+impl Errors {
+    /// Whether every solution within the uncertainty of the reference is nearer to this run than to
+    /// another one.
+    pub(super) fn is_nearer(&self, other: &Self, uncertainty: f64) -> bool {
+        let own = product(&self.vector, &self.vector);
+        let others = product(&other.vector, &other.vector);
+        let apart = own + others - 2.0 * product(&self.vector, &other.vector);
+        // Errors themselves are known up to round-off only.
+        let is_less = others.sqrt() - own.sqrt() > 2.0 * ROUND_OFF;
+        is_less && others - own > 2.0 * uncertainty * apart.max(0.0).sqrt()
+    }
 }
 
 /// A measure with the errors of all runs.
@@ -40,9 +59,25 @@ const ROUND_OFF: f64 = 1e-9;
 /// Why there is no measure.
 const NO_REFERENCE: &str = "the study has no reference";
 
-/// The reference value of a metric.
-pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
-    if IDEAL.contains(&metric) {
+/// Metrics whose exact value is zero in every case.
+const IDEAL: [&str; 6] = [
+    "energy_created",
+    "energy_error",
+    "dissipated_integrator",
+    "dissipated_contact",
+    "penetration",
+    "penetration_mean",
+];
+/// Metrics whose exact value is zero where neither friction nor plastic flow dissipates energy.
+const CONSERVED: [&str; 3] = ["energy_lost", "energy_drift", "energy_lost_impact"];
+/// Metrics that runs with friction or plastic flow have.
+const DISSIPATED: [&str; 2] = ["friction_lost", "plastic_lost"];
+
+/// The reference value of a metric of a study with these runs.
+pub(super) fn standing(reference: Option<&Reference>, rows: &[Row], metric: &str) -> Standing {
+    let is_conserved = || rows.iter().all(|row| DISSIPATED.iter().all(|metric| row.value(metric).is_none()));
+    let is_zero = IDEAL.contains(&metric) || CONSERVED.contains(&metric) && is_conserved();
+    if is_zero {
         return Standing::Established { value: 0.0, uncertainty: 0.0 };
     }
     reference.map_or_else(|| Standing::Not(NO_REFERENCE.to_owned()), |r| r.metric(metric))
@@ -50,7 +85,12 @@ pub fn standing(reference: Option<&Reference>, metric: &str) -> Standing {
 
 /// |m − r|, relative if r is not 0.
 pub fn error(value: f64, right: f64) -> f64 {
-    if right == 0.0 { value.abs() } else { ((value - right) / right).abs() }
+    signed(value, right).abs()
+}
+
+/// m − r, relative to |r| if r is not 0.
+fn signed(value: f64, right: f64) -> f64 {
+    if right == 0.0 { value } else { (value - right) / right.abs() }
 }
 
 /// The data that measures are computed from.
@@ -78,12 +118,12 @@ impl Judge<'_> {
         }
     }
 
-    /// The mean error of those metrics that the reference establishes.
+    /// The errors of those metrics that the reference establishes, root mean square.
     fn of_metrics(&self, names: &[&str]) -> Result<Measured, String> {
         let mut known = Vec::new();
         let mut left_out = Vec::new();
         for name in names {
-            match standing(self.reference, name) {
+            match standing(self.reference, self.rows, name) {
                 Standing::Established { value, uncertainty } => known.push((*name, value, uncertainty)),
                 Standing::Not(why) => left_out.push(format!("{name} ({why})")),
             }
@@ -91,10 +131,11 @@ impl Judge<'_> {
         if known.is_empty() {
             return Err(left_out.join("; "));
         }
-        let mean = |row: &Row| {
-            let each = known.iter().map(|(name, right, _)| Some(error(row.value(name)?, *right)));
-            let each: Vec<f64> = each.collect::<Option<_>>()?;
-            Some(Errors { error: each.iter().sum::<f64>() / each.len() as f64, noise: None })
+        let count = (known.len() as f64).sqrt();
+        let of = |row: &Row| {
+            let each = known.iter().map(|(name, right, _)| Some(signed(row.value(name)?, *right) / count));
+            let vector: Vec<f64> = each.collect::<Option<_>>()?;
+            Some(Errors { error: product(&vector, &vector).sqrt(), vector, noise: None })
         };
         let relative =
             known.iter().map(|(_, right, off)| if *right == 0.0 { *off } else { (off / right).abs() });
@@ -107,7 +148,7 @@ impl Judge<'_> {
             noise: None,
             left_out,
         };
-        Ok(Measured { measure, runs: self.rows.iter().map(mean).collect() })
+        Ok(Measured { measure, runs: self.rows.iter().map(of).collect() })
     }
 
     /// The distance of groups of columns from the reference, relative to their scales.
@@ -133,11 +174,14 @@ impl Judge<'_> {
         };
         let of = |compared: &Option<Compared>| {
             let compared = compared.as_ref()?;
-            let each = used.iter().map(|(i, _)| compared.groups.get(*i)?.as_ref()?.get(window).copied());
+            let each = used.iter().map(|(i, _)| compared.groups.get(*i)?.as_ref()?.get(window));
             let each: Vec<_> = each.collect::<Option<_>>()?;
+            let count = (each.len() as f64).sqrt();
+            let sampled = each.iter().flat_map(|deviation| &deviation.errors);
             Some(Errors {
-                error: rms(each.iter().map(|distance| distance.smooth)),
-                noise: (kind != Kind::Motion).then(|| rms(each.iter().map(|distance| distance.rough))),
+                error: rms(each.iter().map(|deviation| deviation.distance.smooth)),
+                vector: sampled.map(|x| x / count).collect(),
+                noise: (kind != Kind::Motion).then(|| rms(each.iter().map(|d| d.distance.rough))),
             })
         };
         let bounds = used.iter().filter_map(|(_, known)| known.uncertainty.as_ref().ok()?.get(window));
@@ -155,9 +199,31 @@ impl Judge<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metrics::Metric;
 
     #[test]
     fn errors_are_relative_unless_the_reference_is_zero() {
         assert_eq!((error(-0.5, 0.0), error(3.0, -2.0), error(2.0, 2.0)), (0.5, 2.5, 0.0));
+    }
+
+    /// Without friction no energy is lost; with it, only what the reference says.
+    #[test]
+    fn friction_takes_energy() {
+        let with = |name: &'static str| Row {
+            metrics: vec![Metric {
+                name: name.into(),
+                value: Some(0.1),
+                unit: String::new(),
+                definition: "",
+            }],
+            ..Row::default()
+        };
+        let is_zero = |name: &str, row: Row| standing(None, &[row], name).established() == Some((0.0, 0.0));
+        assert!(
+            is_zero("energy_lost", with("restitution")) && is_zero("energy_error", with("friction_lost"))
+        );
+        assert!(
+            !is_zero("energy_lost", with("friction_lost")) && !is_zero("energy_drift", with("plastic_lost"))
+        );
     }
 }

@@ -21,6 +21,9 @@ pub mod design;
 mod digits;
 pub mod ensemble;
 mod groups;
+mod known;
+mod latex;
+mod levels;
 mod manifest;
 mod measure;
 mod orders;
@@ -46,9 +49,10 @@ use compared::{Compared, PhaseOrders, orders_by_phase};
 use design::{Goal, MemberOf};
 use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
+use measure::standing;
 pub use orders::{Refinement, numeric_keys, refinements, varied_keys};
 use ranking::{Ranking, Ranks};
-use reference::{Reference, Trajectory};
+use reference::{Reference, Standing, Trajectory};
 pub use row::Row;
 
 /// A study that has been read.
@@ -183,6 +187,11 @@ impl Study {
             other_rankings,
             checks,
         })
+    }
+
+    /// The reference value of a metric.
+    pub fn standing(&self, metric: &str) -> Standing {
+        standing(self.reference.as_ref(), &self.rows, metric)
     }
 
     /// The values of a metric over the members of an arm's ensemble, the arm included.

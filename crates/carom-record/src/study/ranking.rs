@@ -3,12 +3,16 @@
 //! ```text
 //! metric      e = |m − r|/|r|, |m| if r = 0
 //! columns     e = rms over vectors of ‖⟨m − r⟩‖ / scale       motion, averaged forces and stresses
-//! of an arm   the largest error of its members; its interval: e ± the uncertainty of the reference
+//! of an arm   the largest error of its members; its interval: e ± U, the uncertainty of the reference
+//! a better    (‖b − r‖² − ‖a − r‖²) / (2 ‖a − b‖) > U         for all members a of one and some member b of the other
 //! ```
 //!
-//! Arms are distinguished if their intervals have no point in common. The place of an arm is one
-//! plus the number of arms of its level that are distinguishably better; arms with the same results
-//! to the last bit count as one. An arm is set apart, with the reason, if it or one of its members
+//! The quotient is the distance of r from the solutions that are as far from a as from b: an arm is
+//! distinguishably better if every solution within U of r is nearer to it. Intervals without a
+//! common point imply that; an error that both arms have in common, such as that of their mesh,
+//! makes intervals overlap, but does not hide the difference. The place of an arm is one plus the
+//! number of arms of its level that are distinguishably better; arms with the same results to the
+//! last bit count as one. An arm is set apart, with the reason, if it or one of its members
 //! stopped, created energy or penetrated. Nothing depends on measured times, nor on the order of
 //! the arms.
 
@@ -19,7 +23,7 @@ use super::digits::short;
 use super::groups::Kind;
 use super::manifest::StudyManifest;
 use super::measure::{Errors, Judge, Measured};
-pub use super::measure::{Measure, error, standing};
+pub use super::measure::{Measure, error};
 pub use super::ranked::{Apart, Ranked};
 use super::reference::Reference;
 use super::row::Row;
@@ -61,20 +65,25 @@ impl Ranks<'_> {
         let mut ranking = self.with_window(goal, 0);
         let is_averaged = matches!(goal, Goal::Force | Goal::Stress);
         let Some(verdict) = ranking.verdict.as_ref().ok().filter(|_| is_averaged) else { return ranking };
-        let name = |arm: usize| self.manifest.arms[arm].name.as_str();
-        let others = (1..WINDOWS).filter_map(|window| self.with_window(goal, window).verdict.ok());
-        let changed = others
-            .map(|other| other.arm)
-            .find(|other| *other != verdict.arm && !verdict.alike.iter().any(|alike| alike == name(*other)));
-        if let Some(other) = changed {
+        if let Some(other) = self.changed(goal, verdict) {
             let why = format!(
-                "the verdict depends on the time to average over: {}, and {} with half or twice that time",
-                name(verdict.arm),
-                name(other)
+                "the verdict depends on the time to average over: {}, and {other} with half or twice that time",
+                self.manifest.arms[verdict.arm].name
             );
             ranking.verdict = Err(vec![why]);
         }
         ranking
+    }
+
+    /// The verdict with half or twice the window, if it is not that of the window itself.
+    fn changed(&self, goal: Goal, verdict: &Verdict) -> Option<String> {
+        let name = |arm: usize| self.manifest.arms[arm].name.as_str();
+        let is_same = |arm: usize| arm == verdict.arm || verdict.alike.iter().any(|alike| alike == name(arm));
+        (1..WINDOWS).find_map(|window| match self.with_window(goal, window).verdict {
+            Ok(other) if is_same(other.arm) => None,
+            Ok(other) => Some(name(other.arm).to_owned()),
+            Err(why) => Some(format!("none ({})", why.join("; "))),
+        })
     }
 
     fn with_window(&self, goal: Goal, window: usize) -> Ranking {
@@ -90,12 +99,17 @@ impl Ranks<'_> {
             }
         };
         let count = manifest.arms.iter().map(|arm| arm.role.level + 1).max().unwrap_or(0);
+        let members = |arm: usize| manifest.runs_of(arm).into_iter().filter_map(|run| runs[run].as_ref());
+        let is_better = |arm: usize, other: usize| {
+            let beats = |far: &Errors| members(arm).all(|own| own.is_nearer(far, measure.uncertainty));
+            members(other).any(beats)
+        };
         let level = |level: usize| {
             let sound = self
                 .arms()
                 .filter(|(i, arm)| arm.role.level == level && !apart.iter().any(|apart| apart.arm == *i));
             let ranked = sound.filter_map(|(arm, _)| self.ranked(arm, &runs, measure.uncertainty));
-            self.placed(ranked.collect())
+            self.placed(ranked.collect(), &is_better)
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
         let is_repeated = |r: &Ranked| manifest.runs_of(r.arm).len() > 1;
@@ -105,6 +119,7 @@ impl Ranks<'_> {
             measure: &measure,
             apart: &apart,
             is_twin: &|a, b| rows[a].is_twin(&rows[b]),
+            is_better: &is_better,
             is_repeated: levels.iter().flatten().all(is_repeated),
             ranked: levels.iter().flatten().collect(),
         };
@@ -120,8 +135,8 @@ impl Ranks<'_> {
     }
 
     fn ranked(&self, arm: usize, runs: &[Option<Errors>], uncertainty: f64) -> Option<Ranked> {
-        let members = self.manifest.runs_of(arm).into_iter().map(|run| runs[run]);
-        let members: Vec<Errors> = members.collect::<Option<_>>()?;
+        let members = self.manifest.runs_of(arm).into_iter().map(|run| runs[run].as_ref());
+        let members: Vec<&Errors> = members.collect::<Option<_>>()?;
         let error = members.iter().map(|member| member.error).fold(0.0, f64::max);
         let noise = members.iter().filter_map(|member| member.noise).reduce(f64::max);
         let interval = [(error - uncertainty).max(0.0), error + uncertainty];
@@ -130,10 +145,10 @@ impl Ranks<'_> {
     }
 
     /// Gives the arms of a level their places, and sorts them.
-    fn placed(&self, mut ranked: Vec<Ranked>) -> Vec<Ranked> {
+    fn placed(&self, mut ranked: Vec<Ranked>, is_better: &dyn Fn(usize, usize) -> bool) -> Vec<Ranked> {
         let better = |i: usize| {
             let mut ahead: Vec<usize> = Vec::new();
-            for other in ranked.iter().filter(|other| other.interval[1] < ranked[i].interval[0]) {
+            for other in ranked.iter().filter(|other| is_better(other.arm, ranked[i].arm)) {
                 if !ahead.iter().any(|arm| self.rows[*arm].is_twin(&self.rows[other.arm])) {
                     ahead.push(other.arm);
                 }
@@ -170,10 +185,11 @@ impl Ranks<'_> {
     /// Penetration of a run that is a part of the motion, and more than that of the reference.
     fn deep(&self, row: &Row) -> Option<String> {
         let reference = self.reference?;
-        let motion = reference.known.iter().filter(|known| known.group.kind == Kind::Motion);
-        let motion = motion.map(|known| known.scale).reduce(f64::max)?;
+        let finest = reference.finest()?;
+        let motions = reference.known.iter().filter(|known| known.group.kind == Kind::Motion);
+        let motion = motions.filter_map(|known| known.group.motion(finest)).reduce(f64::max)?;
         let own = row.value("penetration")?;
-        let right = reference.finest()?.value("penetration").unwrap_or(0.0);
+        let right = finest.value("penetration").unwrap_or(0.0);
         let is_deep = own - right > DEEP * motion;
         is_deep.then(|| format!("it penetrates by {}, {} of the motion", short(own), short(own / motion)))
     }

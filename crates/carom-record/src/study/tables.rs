@@ -1,14 +1,14 @@
-//! `study.csv`, `study_tidy.csv`, `claims.csv`, `ensemble.csv`, `reference.csv`, `ranking.csv` and
-//! `verdict.json`.
+//! `study.csv`, `study_tidy.csv`, `claims.csv`, `ensemble.csv`, `reference.csv`, `ranking.csv`,
+//! `ranking.tex` and `verdict.json`.
 
 use serde::Serialize;
 
 use super::arm::step;
 use super::ensemble::Spread;
-use super::measure::standing;
 use super::ranking::{Confidence, Ranking};
 use super::reference::Standing;
 use super::{Row, Study, Verdict};
+use crate::files::write_unsynced;
 use crate::metrics::Metric;
 use crate::{RecordError, Status, json, table};
 
@@ -122,7 +122,7 @@ impl Study {
         let refined = if reference.refines_mesh() { "mesh and step" } else { "step only" };
         let line = |m: &Metric| {
             let estimate = reference.estimate(&m.name).ok();
-            let known = match standing(Some(reference), &m.name) {
+            let known = match self.standing(&m.name) {
                 Standing::Established { value, uncertainty } => ("yes", Some(value), Some(uncertainty), None),
                 Standing::Not(why) => {
                     ("no", estimate.map(|e| e.value), estimate.map(|e| e.uncertainty), Some(why))
@@ -138,22 +138,37 @@ impl Study {
         table::write(&self.directory.join("reference.csv"), &header, metrics.map(line))
     }
 
-    /// `ranking.csv`: level, place and error of every arm; `verdict.json`: the recommendations for
-    /// all goals. Neither depends on the order of the arms, on times or on the machine.
+    /// `ranking.csv`: level, place and error of every arm for all goals; `ranking.tex`: those of
+    /// the study's goal; `verdict.json`: the recommendations for all goals. Neither depends on the
+    /// order of the arms, on times or on the machine.
     fn write_ranking(&self) -> Result<(), RecordError> {
         let Some(ranking) = &self.ranking else { return Ok(()) };
-        let header =
-            ["level", "place", "arm", "method", "step", "error", "error_low", "error_high", "noise", "cost"];
-        let lines = ranking.levels.iter().enumerate().flat_map(|(level, ranked)| {
-            ranked.iter().map(move |r| {
-                let arm = &self.manifest.arms[r.arm];
-                let named = (level, r.place, &arm.name, arm.role.method.as_deref());
-                (named, step(arm, "time.step"), r.error, r.interval, r.noise, r.cost)
-            })
+        let header = [
+            "goal",
+            "level",
+            "place",
+            "arm",
+            "method",
+            "step",
+            "error",
+            "error_low",
+            "error_high",
+            "noise",
+            "cost",
+        ];
+        let all = || std::iter::once(ranking).chain(&self.other_rankings);
+        let ranked = all().flat_map(|ranking| {
+            let levels = ranking.levels.iter().enumerate();
+            levels.flat_map(move |(level, ranked)| ranked.iter().map(move |r| (ranking.goal, level, r)))
+        });
+        let lines = ranked.map(|(goal, level, r)| {
+            let arm = &self.manifest.arms[r.arm];
+            let named = (goal.word(), level, r.place, &arm.name, arm.role.method.as_deref());
+            (named, step(arm, "time.step"), r.error, r.interval, r.noise, r.cost)
         });
         table::write(&self.directory.join("ranking.csv"), &header, lines)?;
-        let all = std::iter::once(ranking).chain(&self.other_rankings);
-        let verdicts: Vec<_> = all.map(|ranking| self.stated(ranking)).collect();
+        write_unsynced(&self.directory.join("ranking.tex"), &[self.latex(ranking).as_bytes()])?;
+        let verdicts: Vec<_> = all().map(|ranking| self.stated(ranking)).collect();
         json::write(&self.directory.join("verdict.json"), &verdicts)
     }
 

@@ -1,7 +1,7 @@
 //! The recommendation that follows from a ranking, with its confidence, or why there is none.
 //!
 //! ```text
-//! accurate      `accuracy` given: e + U ≤ accuracy;   otherwise: not distinguished from the most accurate arm, or within 5 %
+//! accurate      `accuracy` given: e + U ≤ accuracy;   otherwise: the most accurate arm is not better, or by at most 5 %
 //! candidates    accurate, and no arm has a smaller error at no more cost
 //! recommended   of the candidates within 10 % of the lowest cost, the one with the smallest error
 //! ```
@@ -67,6 +67,8 @@ pub(super) struct Field<'a> {
     pub(super) apart: &'a [Apart],
     /// Whether two arms have the same results.
     pub(super) is_twin: &'a dyn Fn(usize, usize) -> bool,
+    /// Whether the first of two arms is distinguishably better.
+    pub(super) is_better: &'a dyn Fn(usize, usize) -> bool,
     /// Whether every arm has several members.
     pub(super) is_repeated: bool,
     pub(super) ranked: Vec<&'a Ranked>,
@@ -124,7 +126,7 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let required = field.required();
     let is_accurate = |r: &&Ranked| match required {
         Some(accuracy) => r.interval[1] <= accuracy,
-        None => r.interval[0] <= EQUAL_ERROR * best.interval[1],
+        None => r.error <= EQUAL_ERROR * best.error || !(field.is_better)(best.arm, r.arm),
     };
     let candidates = || all().filter(|r| is_accurate(r) && field.is_on_front(r));
     let Some(cheapest) = field.least(candidates(), |r| r.cost) else {
@@ -140,7 +142,7 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let chosen = field.least(affordable, |r| r.error).unwrap_or(cheapest);
     let mut alike: Vec<&str> = field
         .rivals(chosen)
-        .filter(|r| r.interval[0] <= chosen.interval[1] && is_accurate(r))
+        .filter(|r| !(field.is_better)(chosen.arm, r.arm) && is_accurate(r))
         .map(|r| field.name(r))
         .collect();
     alike.sort_unstable();
@@ -183,15 +185,15 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
         confidence = confidence.min(most);
         reasons.push(why);
     };
-    match field.least(field.rivals(chosen), |r| r.error) {
-        None => at_most(Confidence::Medium, "no other method was run at this cost".to_owned()),
-        Some(next) if next.interval[0] <= EQUAL_ERROR * chosen.interval[1] => {
-            let is_clear = next.error > CLEAR * chosen.error;
-            let most = if is_clear { Confidence::Medium } else { Confidence::Low };
-            let why = format!("not distinguished from {}: {}", field.name(next), known(next));
-            at_most(most, why);
-        }
-        Some(_) => {}
+    if field.rivals(chosen).next().is_none() {
+        at_most(Confidence::Medium, "no other method was run at this cost".to_owned());
+    }
+    let open = field.rivals(chosen).filter(|r| !(field.is_better)(chosen.arm, r.arm));
+    if let Some(next) = field.least(open, |r| r.error) {
+        let is_clear = next.error > CLEAR * chosen.error;
+        let most = if is_clear { Confidence::Medium } else { Confidence::Low };
+        let why = format!("not distinguished from {}: {}", field.name(next), known(next));
+        at_most(most, why);
     }
     if let Some(accuracy) = field.required() {
         let cheaper = field.ranked.iter().filter(|r| EQUAL_COST * r.cost < chosen.cost);
@@ -208,7 +210,9 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
         at_most(Confidence::Medium, why.to_owned());
     }
     if reasons.is_empty() {
-        reasons.push("its interval is below those of all other methods at its cost".to_owned());
+        let why = "every solution within the uncertainty of the reference is nearer to it than to any other \
+                   method at its cost";
+        reasons.push(why.to_owned());
     }
     (confidence, reasons)
 }

@@ -30,6 +30,8 @@ pub(crate) struct Curve {
     pub(crate) style: usize,
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
+    /// Intervals of the vertical values, if they have any.
+    pub(crate) intervals: Vec<[f64; 2]>,
     pub(crate) drawn: Drawn,
     /// Whether it is black, thin and dashed, above all others: a reference.
     pub(crate) thin: bool,
@@ -107,6 +109,18 @@ impl Curve {
                     "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"8\" fill=\"none\" stroke=\"#222\" stroke-width=\"1.6\"/>"
                 );
             }
+        }
+    }
+
+    /// Draws vertical bars between points of the page, clipped to the rectangle `clip`.
+    pub(super) fn bars(&self, out: &mut String, bars: impl Iterator<Item = [Point; 2]>, clip: &str) {
+        let color = self.look().0;
+        for [[x, low], [_, high]] in bars {
+            let _ = writeln!(
+                out,
+                "<path clip-path=\"url(#{clip})\" d=\"M{x:.1} {low:.1}V{high:.1}\" stroke=\"{color}\" stroke-width=\"1\" \
+                 stroke-opacity=\"0.55\"/>"
+            );
         }
     }
 

@@ -46,6 +46,7 @@ fn scatter(
     plot: Plot,
     y_label: &str,
     point: impl Fn(usize) -> Option<(f64, f64)>,
+    interval: impl Fn(usize) -> Option<[f64; 2]>,
 ) -> Option<Plot> {
     let shown = |arm: &usize| Some((*arm, point(*arm).filter(|p| p.0 > 0.0 && p.1 > 0.0)?));
     let chosen = study.recommended();
@@ -58,6 +59,7 @@ fn scatter(
         for (arms, apart) in [(sound, false), (unsound, true)] {
             let points: Vec<Point> = arms.iter().filter_map(shown).collect();
             let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(_, point)| *point).unzip();
+            let intervals = points.iter().filter_map(|(arm, _)| interval(*arm)).collect();
             let ring = points.iter().position(|(arm, _)| !apart && chosen == Some(*arm));
             let label = if apart { format!("{name}, creates energy") } else { name.to_owned() };
             if !apart {
@@ -66,7 +68,18 @@ fn scatter(
             if !x.is_empty() {
                 let drawn = Drawn::Marked;
                 let chosen = ring.is_some();
-                curves.push(Curve { label, style, x, y, drawn, apart, chosen, ring, ..Curve::default() });
+                curves.push(Curve {
+                    label,
+                    style,
+                    x,
+                    y,
+                    intervals,
+                    drawn,
+                    apart,
+                    chosen,
+                    ring,
+                    ..Curve::default()
+                });
             }
         }
     }
@@ -113,7 +126,7 @@ fn error_cost(study: &Study) -> Option<Plot> {
     let plot = Plot {
         name: "error-cost".into(),
         caption: format!(
-            "Error ({}) against the counted cost, in evaluations of the internal forces.",
+            "Work and precision: error ({}) with its interval against the counted cost, in evaluations of the internal forces.",
             ranking.goal.word()
         ),
         x_label: "counted cost".into(),
@@ -121,10 +134,8 @@ fn error_cost(study: &Study) -> Option<Plot> {
         ..Plot::default()
     };
     let ranked = |arm: usize| ranking.levels.iter().flatten().find(|ranked| ranked.arm == arm);
-    scatter(study, plot, "relative error", |arm| {
-        let ranked = ranked(arm)?;
-        Some((ranked.cost, ranked.error.max(SMALL)))
-    })
+    let point = |arm: usize| Some((ranked(arm)?.cost, ranked(arm)?.error.max(SMALL)));
+    scatter(study, plot, "relative error", point, |arm| Some(ranked(arm)?.interval))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The ranking of the arms of a study and what it rests on: reference values, and the other goals.
 
 use carom_record::metrics::Metric;
-use carom_record::study::ranking::{Ranking, standing};
+use carom_record::study::ranking::Ranking;
 use carom_record::study::reference::{Reference, Standing};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
@@ -199,7 +199,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 @for metric in metrics {
                     tr {
                         td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
-                        @match standing(Some(reference), &metric.name) {
+                        @match study.standing(&metric.name) {
                             Standing::Established { value, uncertainty } => {
                                 @let estimate = reference.estimate(&metric.name).ok();
                                 @let order = estimate.and_then(|estimate| estimate.order).filter(|_| uncertainty > 0.0);

@@ -1,6 +1,6 @@
 //! The recommendation of a study: the setting, its reasons, its cost and its side effects.
 
-use carom_record::study::ranking::{error, standing};
+use carom_record::study::ranking::error;
 use carom_record::study::reference::Standing;
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
@@ -32,11 +32,10 @@ pub(super) fn section(study: &Study) -> Markup {
     let verdict = match &ranking.verdict {
         Ok(verdict) => verdict,
         Err(reasons) => {
-            let why = ranking.measure.as_ref().err().map(ToString::to_string);
             return html! {
                 div.verdict.none {
                     p { b { "No recommendation. " } (Prose(&goal)) }
-                    ul { @for reason in reasons.iter().chain(&why) { li { (Label(&capitalised(reason))) "." } } }
+                    ul { @for reason in reasons { li { (Label(&capitalised(reason))) "." } } }
                 }
             };
         }
@@ -105,16 +104,18 @@ fn costs(study: &Study, arm: usize) -> String {
 
 /// Known side effects of an arm, each with the smallest magnitude of its level.
 fn side_effects(study: &Study, arm: usize) -> Vec<String> {
-    let reference = study.reference.as_ref();
     let percent = |share: f64| format!("{} %", three(100.0 * share));
     let mut lines = Vec::new();
     for (metric, words) in SIDE_EFFECTS {
-        let known = standing(reference, metric);
+        let known = study.standing(metric);
         let Standing::Established { value: right, uncertainty } = known else { continue };
+        let is_energy = metric.starts_with("energy") || metric.starts_with("dissipated");
         // A relative error needs a nonzero reference; energies are fractions already.
-        if right == 0.0 && !metric.starts_with("energy") && !metric.starts_with("dissipated") {
+        if right == 0.0 && !is_energy {
             continue;
         }
+        let error_of = if right != 0.0 && is_energy { "error of the " } else { "" };
+        let words = format!("{error_of}{words}");
         // Energies keep their sign: one that was created is no loss.
         let shown = |value: f64| if right == 0.0 { value } else { error(value, right) };
         let of = |arm: usize| study.rows[arm].value(metric).map(shown);
@@ -132,7 +133,7 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
     }
     let late = study.compared.get(arm).and_then(|compared| compared.as_ref()?.late.as_ref());
     if let Some((column, late)) = late {
-        let known = standing(reference, "contact_start").established().map_or(0.0, |known| known.1);
+        let known = study.standing("contact_start").established().map_or(0.0, |known| known.1);
         let direction = if *late < 0.0 { "leads" } else { "lags" };
         let amount = if late.abs() < known {
             format!("less than the uncertainty of its instants, {}", three(known))

@@ -307,12 +307,12 @@ fn a_design_builds_its_arms_and_ranks_them() {
 }
 
 /// Meshes of 1 and 2 times the cells with steps in the same ratio; every arm for two phases on two
-/// meshes, the reference for two phases only. Sides cannot be swapped against a rigid wall.
+/// meshes, the reference for two phases only.
 #[test]
 fn a_reference_refines_its_mesh_and_an_ensemble_repeats_every_arm() {
     let (folder, path) = folder(
         "goal = \"energy\"\nreference = \"fine\"\n[fine]\nrefine = 2\nmesh = [1, 2]\n\
-         [ensemble]\nphases = 2\nmesh = [1, 2]\nswapped = true\n[[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n\
+         [ensemble]\nphases = 2\nmesh = [1, 2]\n[[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n\
          [[arm]]\nname = \"CH\"\n[[claim]]\ntext = \"t\"\ncompare = 'energy_lost of \"Hu\" > energy_lost of \"CH\"'\n",
     );
     let plan = Plan::read(&path).unwrap();
@@ -378,6 +378,8 @@ fn wrong_ensembles_are_reported() {
     assert!(first("mesh = [1, 1]").what.contains("do not increase"));
     assert!(first("phases = 1").help.contains("phases = 5"));
     assert_eq!(first("phase = 5").help, "did you mean `phases`?");
+    let found = first("phases = 2\nswapped = true");
+    assert!(found.line == 6 && found.why.contains("not a side and a rigid primary"), "{found:?}");
     assert!(first("sets = [{}]").what.contains("one of the changes is empty"));
     assert!(first("sets = [{ \"contact.wall.persistencies\" = \"none\" }]").help.contains("persistency"));
 }
@@ -411,7 +413,7 @@ fn matched_cost_settles_and_resumes_at_the_same_steps() {
     );
 }
 
-/// Two methods and one at the cost of another, in two orders and with other numbers of concurrent
+/// Two methods and one at the cost of another, in five orders and with other numbers of concurrent
 /// runs: the files with the verdict are the same to the last byte.
 #[test]
 fn verdicts_depend_neither_on_the_order_of_the_arms_nor_on_times() {
@@ -431,8 +433,11 @@ fn verdicts_depend_neither_on_the_order_of_the_arms_nor_on_times() {
             .map(|name| fs::read_to_string(out.join(name)).unwrap())
     };
     let first = files([0, 1, 2], 1);
-    assert!(first[0].lines().count() == 4 && first[1].contains("\"recommended\""), "{first:?}");
-    assert_eq!(files([2, 0, 1], 2), first);
+    let ranked = first[0].lines().filter(|line| line.starts_with("trajectory,"));
+    assert!(ranked.count() == 3 && first[1].contains("\"recommended\""), "{first:?}");
+    for (order, jobs) in [([2, 0, 1], 2), ([1, 2, 0], 3), ([2, 1, 0], 1), ([0, 2, 1], 2)] {
+        assert_eq!(files(order, jobs), first, "{order:?}");
+    }
 }
 
 /// Arms at a common step, and one explicit arm at the cost of the first: only its step is
@@ -459,6 +464,36 @@ fn an_arm_matches_cost_where_the_others_match_steps() {
     );
     assert_eq!(study.rows[2].value("steps"), Some(arms[2].steps as f64));
     assert!(out.join("pilots/03-explicit-cost-of-dt-1e-2/pilot.json").is_file());
+}
+
+/// What a goal compares must be recorded.
+#[test]
+fn goals_without_what_they_compare_are_reported() {
+    let first = |study: &str| wrong(&format!("{study}[[arm]]\nname = \"a\"\n"))[0].clone();
+    let found = first("goal = \"stress\"\nreference = \"fine\"\n");
+    assert!(found.line == 2 && found.what.contains("goal `stress`"), "{found:?}");
+    assert!(found.why.contains("no probe records a stress in the case of \"a\""), "{found:?}");
+    assert!(found.help.contains("add a [[probe]]"), "{found:?}");
+    assert!(first("goal = \"friction\"\n").why.contains("no contact has friction"));
+    let found = first("goal = \"force\"\nreference = \"exact\"\nwindow = 0.01\n");
+    assert!(found.line == 3 && found.help.contains("[exact]"), "{found:?}");
+}
+
+/// The record of an arm of matched cost was removed: it is computed again at the step that was
+/// found.
+#[test]
+fn a_removed_arm_of_matched_cost_is_computed_again() {
+    let (folder, path) = folder(
+        "design = \"matched-cost\"\n[[arm]]\nname = \"CH\"\n[[arm]]\nname = \"Hu\"\n\
+         set = { \"time.scheme\" = { kind = \"hu\" } }\n",
+    );
+    let out = folder.path().join("out");
+    let study = start(&Plan::read(&path).unwrap(), &out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
+    let arm = out.join(&study.study.manifest.arms[1].directory);
+    let before = fingerprint(&arm).unwrap();
+    fs::remove_dir_all(&arm).unwrap();
+    resume(&out, 1, &mut |_| (), &AtomicBool::new(false)).unwrap();
+    assert_eq!(fingerprint(&arm).unwrap(), before);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use carom_time::{ForceRule, KINDS, Kernel, Memory, Oscillator, Root, Scheme, Stage, explain};
+use carom_time::{Explained, ForceRule, KINDS, Kernel, Memory, Oscillator, Root, Scheme, Stage, explain};
 
 fn ch(r: f64) -> Scheme {
     Scheme::chung_hulbert(r).unwrap()
@@ -294,4 +294,24 @@ fn the_balance_weights_are_those_of_eq_15() {
         [1.0, 1.0, 1.0 - scheme.alpha_f, scheme.alpha_f]
     );
     assert_eq!([b.internal, b.external, b.contact], [0.0, 0.0, scheme.alpha_f]);
+}
+
+/// By hand: with ten linear elements of consistent mass per wavelength, waves of the trapezoidal
+/// rule, whose angle per step is 2 atan(Ω/2), are slower than c by the period error less the excess
+/// of the element; central differences with lumped masses carry waves exactly at c Δt = h. The
+/// trapezoidal rule keeps the energy of a mode, so that it does not overshoot; the first step of
+/// Hu's scheme has u = 51/101, a = −100 u, and v = 50 + 1.5 a.
+#[test]
+fn dispersion_and_overshoot() {
+    let trapezoidal = explain(&Scheme::newmark(0.25, 0.5).unwrap());
+    let exact = TAU / 10.0;
+    let omega = 2.0 * (exact / 2.0).sin() * (3.0 / (2.0 + exact.cos())).sqrt();
+    let by_hand = 2.0 * (omega / 2.0).atan() / exact - 1.0;
+    assert!((trapezoidal.accuracy[1].dispersion.unwrap() - by_hand).abs() < 1e-9 && by_hand < -0.01);
+    assert!(trapezoidal.overshoot.displacement < 1.0 + 1e-9 && trapezoidal.overshoot.velocity < 1.0 + 1e-9);
+    let explicit = KINDS.iter().find(|kind| kind.name == "central-difference").unwrap();
+    let explicit = explicit.named(&explicit.members[0]).integrator().unwrap().explain();
+    let Explained::Nonsmooth(explicit) = explicit else { panic!() };
+    assert!(explicit.accuracy.iter().all(|row| row.dispersion.unwrap().abs() < 1e-9));
+    assert!((explain(&Scheme::hu()).overshoot.velocity - (150.0 * 51.0 / 101.0 - 50.0) / 10.0).abs() < 1e-9);
 }

@@ -5,6 +5,7 @@ use crate::Machine;
 use crate::metrics::Distance;
 use crate::metrics::Metric;
 use crate::study::StudySource;
+use crate::study::compared::Deviation;
 use crate::study::design::{Design, Kind as Matched, MemberOf, Role};
 use crate::study::ensemble::{Ensemble, Member};
 use crate::study::reference::{Known, Level, Trajectory};
@@ -72,14 +73,17 @@ fn by_energy((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
     Ranks { manifest, rows, compared: &vec![None; rows.len()], reference: None }.of(Goal::Energy)
 }
 
-/// Ranks by a goal of columns, with errors given for each run.
+/// Ranks by a goal of columns, with errors given for each run. Successive arms err in opposite
+/// directions, so that they are distinguished if their intervals have no point in common.
 fn by_columns(goal: Goal, (manifest, rows): &(StudyManifest, Vec<Row>), reference: &Reference) -> Ranking {
-    let compared = |row: &Row| {
+    let compared = |(i, row): (usize, &Row)| {
         let off = row.value("energy_error").unwrap_or_default();
-        let each = |known: &Known| Some(vec![Distance { smooth: off, rough: 0.0 }; known.windows.len()]);
+        let errors = vec![if i % 2 == 0 { off } else { -off }];
+        let deviation = Deviation { distance: Distance { smooth: off, rough: 0.0 }, errors };
+        let each = |known: &Known| Some(vec![deviation.clone(); known.windows.len()]);
         Some(Compared { groups: reference.known.iter().map(each).collect(), ..Compared::default() })
     };
-    let compared: Vec<_> = rows.iter().map(compared).collect();
+    let compared: Vec<_> = rows.iter().enumerate().map(compared).collect();
     Ranks { manifest, rows, compared: &compared, reference: Some(reference) }.of(goal)
 }
 
@@ -90,8 +94,10 @@ fn reference(off: f64) -> Reference {
         let metrics = row("", &[("penetration", 0.0)]).metrics;
         Trajectory { times: vec![0.0, 0.5, 1.0], columns, metrics, ..Trajectory::default() }
     };
-    // Triangles of the height h have the norm h/√3; errors of 4, 2 and 1 converge with order 1.
-    let levels = [4.0, 2.0, 1.0].map(|step| Level::single(step, run(step * off * 3.0_f64.sqrt())));
+    // Triangles of the height h have the norm h/√3; errors of 4, 2 and 1 converge with order 1,
+    // which counts as 2/3.
+    let height = off * 3.0_f64.sqrt() * (2.0_f64.powf(2.0 / 3.0) - 1.0);
+    let levels = [4.0, 2.0, 1.0].map(|step| Level::single(step, run(step * height)));
     Reference::of_levels(String::new(), levels.into()).grouped(&[].into(), &Ok(0.1))
 }
 
@@ -192,6 +198,22 @@ fn places_follow_from_intervals() {
     manifest.accuracy = None;
     let verdict = by_columns(Goal::Trajectory, &(manifest, rows), &reference(0.01)).verdict.unwrap();
     assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b 0".into()], Confidence::Medium));
+}
+
+/// By hand: with errors of 0.03 and 0.05 in the same direction, the solutions as far from one as
+/// from the other are 0.04 from the reference, which is uncertain by 0.0125 only.
+#[test]
+fn errors_in_common_do_not_hide_a_difference() {
+    let far = |x: f64, y: f64| Errors { error: x.hypot(y), vector: vec![x, y], noise: None };
+    assert!(
+        far(0.03, 0.0).is_nearer(&far(0.05, 0.0), 0.039) && !far(0.03, 0.0).is_nearer(&far(0.05, 0.0), 0.041)
+    );
+    assert!(!far(0.03, 0.0).is_nearer(&far(-0.05, 0.0), 0.0125));
+    // Disjoint intervals suffice.
+    assert!(far(0.03, 0.0).is_nearer(&far(-0.06, 0.0), 0.0125));
+    assert!(
+        !far(0.05, 0.0).is_nearer(&far(0.03, 0.0), 0.0) && !far(0.03, 0.0).is_nearer(&far(0.03, 0.0), 0.0)
+    );
 }
 
 /// Arms that created energy, stopped or penetrated are not ranked, and the reason is known.

@@ -134,8 +134,7 @@ fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
         Ok(verdict) => verdict,
         Err(reasons) => {
             let mut lines = vec![String::new(), format!("no recommendation for the goal \"{goal}\":")];
-            let why = ranking.measure.as_ref().err().map(ToString::to_string);
-            lines.extend(reasons.iter().chain(&why).map(|reason| format!("  {reason}")));
+            lines.extend(reasons.iter().map(|reason| format!("  {reason}")));
             return lines;
         }
     };

@@ -1,0 +1,57 @@
+//! The runs of a reference: levels of refinement with their members, and checks.
+
+use super::trajectory::Trajectory;
+
+/// The runs of one level of refinement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// Time step; cells shrink with it where the mesh is refined too.
+    pub step: f64,
+    /// Factor of mesh refinement.
+    pub mesh: f64,
+    /// Number of different phases of the members.
+    pub phases: usize,
+    /// Members of the level's ensemble, the run as given first.
+    pub members: Vec<Trajectory>,
+}
+
+impl Level {
+    /// A single run whose mesh is refined with its step.
+    pub fn single(step: f64, run: Trajectory) -> Self {
+        Self { step, mesh: 1.0 / step, phases: 1, members: vec![run] }
+    }
+
+    /// Range of all phases relative to that of the members: n phases, 1/n of a step apart, cover
+    /// (n − 1)/n of the range of a quantity that changes evenly with the phase.
+    pub(super) fn between_phases(&self) -> f64 {
+        if self.phases > 1 { self.phases as f64 / (self.phases - 1) as f64 } else { 1.0 }
+    }
+}
+
+/// The runs of a reference.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Levels {
+    /// Levels of refinement, the finest last; for exact formulas, one level sampled from them.
+    pub(super) all: Vec<Level>,
+    /// Runs of another scheme and of twice the step on the finest mesh.
+    pub(super) checks: Vec<Trajectory>,
+    /// Whether the values are those of formulas.
+    pub(super) exact: bool,
+}
+
+impl Levels {
+    /// Steps of the levels.
+    pub(super) fn sizes(&self) -> Vec<f64> {
+        self.all.iter().map(|level| level.step).collect()
+    }
+
+    /// The first member of the finest level.
+    pub(super) fn finest(&self) -> Option<&Trajectory> {
+        self.all.last()?.members.first()
+    }
+
+    /// Whether the error of the mesh is known: there is none, or the mesh was refined.
+    pub(super) fn refines_mesh(&self) -> bool {
+        self.exact || self.all.windows(2).any(|pair| pair[1].mesh > pair[0].mesh)
+    }
+}

@@ -1,0 +1,62 @@
+//! Checks that the records of a study will contain what its goal compares.
+
+use carom_record::study::design::Goal;
+use carom_run::case::{Case, Problem, history_columns};
+
+use crate::file::StudyFile;
+
+/// What a goal compares: a test of the name of a column, and what is missing without one.
+struct Compared {
+    is_column: fn(&str) -> bool,
+    missing: &'static str,
+    help: &'static str,
+}
+
+fn quantity(column: &str) -> &str {
+    column.rsplit('.').next().unwrap_or_default()
+}
+
+/// What a goal compares; none if every record has it.
+fn compared(goal: Goal) -> Option<Compared> {
+    let of = |is_column, missing, help| Some(Compared { is_column, missing, help });
+    match goal {
+        Goal::Stress => of(
+            |column| quantity(column).starts_with("sigma_") || quantity(column) == "von_mises",
+            "no probe records a stress",
+            "add a [[probe]] with a stress in `record`, for example \"von_mises\", or choose another goal",
+        ),
+        Goal::Force => of(
+            |column| column.starts_with("contact_force_"),
+            "there is no contact",
+            "add a [[contact]], or choose another goal",
+        ),
+        Goal::Friction => of(
+            |column| column == "slip",
+            "no contact has friction",
+            "give a contact a coefficient `mu`, or choose another goal",
+        ),
+        Goal::Trajectory | Goal::Cost | Goal::Energy => None,
+    }
+}
+
+/// Adds the problem that an arm, or the exact solution, has nothing that the goal compares.
+pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
+    let Some(goal) = file.goal else { return };
+    let Some(Compared { is_column, missing, help }) = compared(goal) else { return };
+    let is_recorded = |case: &Case| {
+        let has_contact = goal != Goal::Force || !case.contacts.is_empty();
+        has_contact && history_columns(case).iter().any(|column| is_column(&column.name))
+    };
+    let what = format!("nothing is recorded that the goal `{}` compares", goal.word());
+    if let Some((name, _)) = arms.iter().find(|(_, case)| !is_recorded(case)) {
+        problems.push(Problem::new("goal", what, format!("{missing} in the case of \"{name}\""), help));
+        return;
+    }
+    let is_exact = file.reference.as_deref() == Some("exact") && goal != Goal::Friction;
+    let lacks = |case: &&Case| !case.exact.keys().any(|column| is_column(column));
+    if is_exact && arms.first().map(|(_, case)| *case).is_some_and(|case| lacks(&case)) {
+        let what = format!("the exact solution has nothing that the goal `{}` compares", goal.word());
+        let help = "add a formula for it to [exact] of the case, or write `reference = \"fine\"`";
+        problems.push(Problem::new("reference", what, "[exact] has no such column", help));
+    }
+}
