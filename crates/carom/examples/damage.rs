@@ -33,7 +33,7 @@ impl<const D: usize> Material<D> for Damage {
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {
         let of = self.of.at(h)?;
         let start = past.memory[0].max(self.threshold);
-        let end = start.max(self.of.energy(&of));
+        let end = start.max(Material::<D>::energy(&self.of, &of));
         Ok(Damaged { of, start, end })
     }
 
@@ -46,7 +46,7 @@ impl<const D: usize> Material<D> for Damage {
     }
 
     fn energy(&self, point: &Self::Point) -> f64 {
-        self.of.energy(&point.of) * self.threshold / point.end
+        Material::<D>::energy(&self.of, &point.of) * self.threshold / point.end
     }
 
     fn stress(&self, point: &Self::Point) -> Mat<D> {

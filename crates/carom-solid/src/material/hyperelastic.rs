@@ -21,7 +21,8 @@ pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 /// in the step; the stress is ∂ΔW/∂F. What an objective one remembers does not depend on the
 /// rotation in F: discrete gradients evaluate it at the strain. It states [`Material::MEMORY`],
 /// [`Material::after`], [`Material::remember`] and [`Material::dissipated`]; others need none of
-/// these. One that yields adds [`Material::YIELDS`], [`Material::unevolved`] and [`Material::released`].
+/// these. One that yields adds [`Material::YIELDS`], [`Material::unevolved`] and
+/// [`Material::released`].
 pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize;

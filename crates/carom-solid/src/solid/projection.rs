@@ -138,12 +138,11 @@ fn solve(matrix: &mut [Vec<f64>], right: &mut [f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::Domain;
-    use crate::shape::{Cube, Square, Tetrahedron, Triangle};
+    use crate::shape::{Domain, Hex8, Quad4, Tet10, Tri6};
 
     /// Fields of the degree are reproduced, of every rule with enough points.
-    fn reproduces<const D: usize, S: Domain<D>>(rule: usize, degree: usize) {
-        let points = S::rule(rule).points;
+    fn reproduces<const D: usize, const N: usize, S: Shape<D, N>>(rule: usize, degree: usize) {
+        let points = S::Domain::rule(rule).points;
         let field = |xi: &[f64]| -> f64 {
             monomials(xi, degree).iter().enumerate().map(|(k, m)| (1.0 + k as f64) * m).sum()
         };
@@ -157,19 +156,19 @@ mod tests {
 
     #[test]
     fn polynomials_are_reproduced() {
-        reproduces::<2, Triangle>(4, 1);
-        reproduces::<2, Triangle>(6, 2);
-        reproduces::<2, Square>(2, 1);
-        reproduces::<2, Square>(4, 1);
-        reproduces::<3, Tetrahedron>(4, 1);
-        reproduces::<3, Tetrahedron>(6, 2);
-        reproduces::<3, Cube>(2, 1);
+        reproduces::<2, 6, Tri6>(4, 1);
+        reproduces::<2, 6, Tri6>(6, 2);
+        reproduces::<2, 4, Quad4>(2, 1);
+        reproduces::<2, 4, Quad4>(4, 1);
+        reproduces::<3, 10, Tet10>(4, 1);
+        reproduces::<3, 10, Tet10>(6, 2);
+        reproduces::<3, 8, Hex8>(2, 1);
     }
 
     /// A point alone gives its value everywhere.
     #[test]
     fn too_few_points_give_their_mean() {
-        assert_eq!(weights(&Triangle::rule(0).points, &[0.9, 0.1], 1), [1.0]);
+        assert_eq!(weights(&<Tri6 as Shape<2, 6>>::Domain::rule(0).points, &[0.9, 0.1], 1), [1.0]);
         assert_eq!(monomials(&[2.0, 3.0], 2), [1.0, 2.0, 3.0, 4.0, 6.0, 9.0]);
     }
 }
