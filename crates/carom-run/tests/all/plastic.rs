@@ -184,15 +184,13 @@ fn a_part_of_a_state_remembers() {
 /// and a run that is resumed has the same bits.
 #[test]
 fn yielding_bodies_are_tied_and_touch_by_mortar() {
-    let bodies = |velocity: &str| {
-        let head = block("T6", "")
-            .replace("place = { rotate = 20.0, about = [0.0, 0.0], shift = [0.0, 0.02] }\n", "");
+    let bodies = |lower: &str, upper: &str| {
+        let head = block("T6", "");
+        let head = head.replace("place = { rotate = 20.0, about = [0.0, 0.0], shift = [0.0, 0.02] }\n", "");
         let other = "[[body]]\nname = \"cap\"\nmaterial = \"metal\"\nelement = \"T6\"\n\
              mesh = { shape = \"rectangle\", min = [0.1, 1.0], max = [0.9, 1.5], cells = [2, 2] }\n";
-        format!(
-            "{}{other}velocity = {velocity}\n",
-            head.replace("velocity = [0.3, -1.0]", "velocity = [0.0, 0.0]")
-        )
+        let head = head.replace("velocity = [0.3, -1.0]", &format!("velocity = {lower}"));
+        format!("{head}{other}velocity = {upper}\n")
     };
     let tie = |method: &str| {
         format!(
@@ -201,9 +199,12 @@ fn yielding_bodies_are_tied_and_touch_by_mortar() {
     };
     let contact = "[[contact]]\nname = \"joint\"\nmethod = \"mortar\"\nmu = 0.3\nsecondary = \"cap.bottom\"\n\
          primary = \"block.top\"\n";
-    for (joint, velocity) in [(tie("mortar"), "[0.2, 1.0]"), (contact.to_owned(), "[0.2, -1.0]")] {
+    let apart = "[\"0.2*Y\", \"0.8*(Y - 0.5)\"]";
+    for (joint, [lower, upper]) in
+        [(tie("mortar"), [apart; 2]), (contact.to_owned(), ["[0.0, 0.0]", "[0.2, -1.0]"])]
+    {
         let rest = timed("{ kind = \"energy-momentum\" }", 0.005, 0.2) + "[newton]\ntolerance = 1e-12\n";
-        let text = bodies(velocity) + &joint + &rest;
+        let text = bodies(lower, upper) + &joint + &rest;
         let case = case(&text, &[""; 0]);
         let mut whole = Setup::new(&case).start().unwrap_or_else(|p| panic!("{p:?}"));
         let start = momenta(&whole, &whole.state().v);

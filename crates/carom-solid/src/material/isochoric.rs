@@ -19,6 +19,7 @@ use carom_algebra::{Mat, Vector};
 
 use super::hyperelastic::Material;
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
+use super::plane_stress::stress_free;
 use super::{NotPositive, Thickness};
 
 /// Energy W of the isochoric invariants.
@@ -175,4 +176,11 @@ impl<W: OfInvariants, const D: usize> Material<D> for Isochoric<W> {
     }
 }
 
-impl<W: OfInvariants> Thickness for Isochoric<W> {}
+impl<W: OfInvariants> Thickness for Isochoric<W> {
+    /// The search begins at the thickness that keeps the volume: beyond J = e, the stress of ln J
+    /// falls with the thickness.
+    fn excess_stretch(&self, h: &Mat<2>) -> Result<f64, NotPositive> {
+        let excess = valid_excess(h)?;
+        stress_free(self, h, -excess / (1.0 + excess), |h| self.at(h))
+    }
+}
