@@ -227,7 +227,7 @@ const COUNTS: [(&str, &str); 5] = [
 
 /// Unit and meaning of a probe's column.
 fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
-    use Quantity::{Ax, Ay, Az, DetF, PlasticStrain, Ux, Uy, Uz, VonMises, Vx, Vy, Vz};
+    use Quantity::{Ax, Ay, Az, DetF, PlasticStrain, Ux, Uy, Uz, VonMises, Vx, Vy, Vz, Yielded};
     let axis = &quantity.word()[1..];
     match quantity {
         Ux | Uy | Uz => (&label.length, format!("displacement along {axis}")),
@@ -236,6 +236,8 @@ fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
         VonMises => (&label.stress, "von Mises stress (from the Cauchy stress)".to_owned()),
         DetF => (&label.none, "volume ratio J".to_owned()),
         PlasticStrain => (&label.none, "equivalent plastic strain".to_owned()),
+        Yielded => (&label.none, "share of the quadrature points of the cell that have yielded".to_owned()),
+        strain if strain.word().starts_with("strain") => (&label.none, "Green–Lagrange strain".to_owned()),
         _ => (&label.stress, "Cauchy stress".to_owned()),
     }
 }

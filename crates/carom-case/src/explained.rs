@@ -46,7 +46,7 @@ pub struct ExplainedKey {
 }
 
 /// A word or key with its meaning.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Described {
     /// The word or key, as in files.
     pub name: &'static str,
@@ -56,7 +56,8 @@ pub struct Described {
 
 /// Keys of a case file, and of files with the keys of more tables, by a path such as
 /// `newton.tolerance`, or by its last names alone, in any table. Tables that say the same of a key
-/// are given together. Empty if there is no such key.
+/// are given together. Or a word such as `hencky`, by the keys of which it is a value, with its
+/// meaning alone. Empty if there is neither.
 pub fn explained(path: &str, more: &[&'static Table]) -> Vec<ExplainedKey> {
     let all = every_key(more);
     let parts: Vec<&str> = path.split('.').collect();
@@ -66,6 +67,10 @@ pub fn explained(path: &str, more: &[&'static Table]) -> Vec<ExplainedKey> {
     let mut found: Vec<_> = all.iter().filter(at_path).collect();
     if found.is_empty() {
         found = all.iter().filter(by_name).collect();
+    }
+    let of_word: Vec<ExplainedKey> = all.iter().filter_map(|key| key.of_word(path)).collect();
+    if found.is_empty() {
+        found = of_word.iter().collect();
     }
     let mut merged: Vec<ExplainedKey> = Vec::new();
     for key in found {
@@ -158,6 +163,12 @@ fn tables(kind: &Kind) -> Vec<&'static Table> {
 }
 
 impl ExplainedKey {
+    /// The key with one of its words alone; none if the word is no value of it.
+    fn of_word(&self, word: &str) -> Option<Self> {
+        let words: Vec<Described> = self.words.iter().filter(|known| known.name == word).copied().collect();
+        (!words.is_empty()).then(|| Self { words, ..self.clone() })
+    }
+
     fn of(path: &str, key: &Key, table: &'static Table) -> Self {
         let mut later = Vec::new();
         let mut words = Vec::new();
@@ -165,6 +176,9 @@ impl ExplainedKey {
             later.extend(choice.later);
             let meanings = choice.meanings.iter().copied().chain(std::iter::repeat(""));
             words.extend(choice.now.iter().zip(meanings).map(|(&name, meaning)| Described { name, meaning }));
+        }
+        if let Kind::Choices(choices) = key.kind {
+            words.extend(choices.iter().map(|&name| Described { name, meaning: "" }));
         }
         later.extend(Some(key.later).filter(|later| !later.is_empty()));
         let keys = match key.kind {

@@ -56,10 +56,10 @@ pub use read_scheme::read_scheme;
 pub use schema::{schema, schema_of};
 pub use spec::{
     ActiveSetRule, BodySpec, Case, ContactLaw, ContactPoint, ContactSpec, Detection, Enforcement, Fallback,
-    ForceTime, FormulaSpec, FrictionSpec, InitialSpec, Law, LinearRule, LoadKind, LoadSpec, MassKind,
-    MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overhang, Overlap, OverlaySpec,
-    Persistency, Plane, PlasticSpec, Preset, PrimarySpec, ProbeSpec, Quadrature, Quantity, RefineSpec, SKIN,
-    SchemeSpec, SupportSpec, TangentRule, TieMethod, TieSpec, TimeSpec, Units, Velocities, Volumetric,
-    load_variables,
+    ForceTime, FormulaSpec, FrictionSpec, InitialSpec, InvariantsSpec, Law, LinearRule, LoadKind, LoadSpec,
+    MassKind, MaterialSpec, MeshSpec, Method, NewtonSpec, ObstacleMotion, OutputSpec, Overhang, Overlap,
+    OverlaySpec, Persistency, Plane, PlasticSpec, Preset, PrimarySpec, ProbeSpec, Quadrature, Quantity,
+    RefineSpec, SKIN, SchemeSpec, SupportSpec, TangentRule, TieMethod, TieSpec, TimeSpec, Units, Velocities,
+    Volumetric, load_variables,
 };
 pub use surface_file::SurfaceSpec;

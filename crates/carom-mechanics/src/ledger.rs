@@ -18,7 +18,6 @@ use std::borrow::Cow;
 
 use carom_algebra::sums::dot;
 use carom_contact::{Pair, Row, Rows};
-use carom_solid::Configuration;
 use carom_time::{Stage, Weights};
 
 use crate::contact::friction::secondary_friction;
@@ -236,7 +235,7 @@ pub(crate) fn account(
     for (impulse, mean) in next.impulses.iter_mut().zip(&means.contact_forces) {
         (0..3).for_each(|i| impulse[i] += dt * mean[i]);
     }
-    book_materials(model, state, next, dt);
+    book_materials(next);
     next.ledger.strain = strain + last.springs;
     next.ledger.potential = model.potential(&next.y);
     book_kinetic(model, next);
@@ -328,10 +327,9 @@ pub(crate) fn change_of_loads(state: &State, next: &State, increment: &[f64]) ->
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()
 }
 
-/// Records what the materials dissipate in a step of length `dt`.
-pub(crate) fn book_materials(model: &Model, before: &State, next: &mut State, dt: f64) {
-    let past = before.materials.past(dt);
-    let lost = model.dissipated(&Configuration { before: None, y: &next.y, past });
+/// Records what the materials dissipate in a step, as known from its forces.
+pub(crate) fn book_materials(next: &mut State) {
+    let lost = std::mem::take(&mut next.materials.lost);
     for (sum, lost) in next.materials.dissipated.iter_mut().zip(lost) {
         *sum += lost;
         next.ledger.materials += lost;

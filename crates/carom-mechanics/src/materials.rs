@@ -19,6 +19,9 @@ pub struct Materials {
     pub(crate) stored: Vec<f64>,
     /// Energy that each body with memory has dissipated so far.
     pub(crate) dissipated: Vec<f64>,
+    /// Energy that each body dissipates in the step that led to this memory, until it is booked.
+    #[serde(skip)]
+    pub(crate) lost: Vec<f64>,
 }
 
 impl Materials {
@@ -38,6 +41,7 @@ impl Materials {
             self.memory = Arc::new(vec![0.0; numbers]);
         }
         self.stored.resize(bodies, 0.0);
+        self.lost.resize(bodies, 0.0);
     }
 
     /// Energy that each body has dissipated so far; zero of bodies without memory, empty if none
@@ -51,9 +55,10 @@ impl Materials {
         Past { memory: &self.memory, dt }
     }
 
-    /// Takes over what a trial stores and remembers.
+    /// Takes over what a trial stores, remembers and dissipates.
     pub(crate) fn accept(&mut self, trial: &Self) {
         self.memory.clone_from(&trial.memory);
         self.stored.clone_from(&trial.stored);
+        self.lost.clone_from(&trial.lost);
     }
 }

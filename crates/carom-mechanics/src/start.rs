@@ -95,6 +95,7 @@ pub(crate) fn start(
     state.ledger.strain = model
         .internal_force(&at, &mut state.f_internal, &mut state.materials)
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
+    state.materials.lost.clear();
     model.loads_into(0.0, &state.y, &mut LoadsAt::default(), &mut state.f_external)?;
     let mut motions = Vec::new();
     model.motions.at(0.0, &mut motions)?;

@@ -8,6 +8,7 @@ mod case;
 mod error;
 mod explain;
 mod function;
+mod law;
 mod record;
 mod simulation;
 mod study;

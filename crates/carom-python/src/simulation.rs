@@ -15,6 +15,7 @@ use serde_json::Value as Json;
 use crate::case::Case;
 use crate::error::{CaseError, of_problems};
 use crate::function::{Failure, functions, raised};
+use crate::law::Law;
 use crate::tables;
 
 pyo3::import_exception!(carom.errors, StoppedError);
@@ -60,12 +61,25 @@ impl Simulation {
 #[pymethods]
 impl Simulation {
     #[new]
-    fn new(py: Python<'_>, case: &Case, threads: usize, given: &Bound<'_, PyDict>) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        case: &Case,
+        threads: usize,
+        given: &Bound<'_, PyDict>,
+        laws: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
         let (functions, failure) = functions(given)?;
         let names = functions.0.keys().cloned().collect();
+        let mut own = Vec::new();
+        for (material, object) in laws {
+            let material: String = material.extract()?;
+            own.push((material.clone(), Law::new(material, &object, failure.clone())?));
+        }
         let spec = case.with(functions);
         let started = py.detach(|| {
-            let library = Setup::new(&spec).threads(threads).start()?;
+            let setup = Setup::new(&spec).threads(threads);
+            let setup = own.into_iter().fold(setup, |setup, (material, law)| setup.material(&material, law));
+            let library = setup.start()?;
             let rows = Rows::new(&spec, &library);
             Ok(Inner { library, rows })
         });

@@ -34,7 +34,7 @@ fn square(element: Element, law: Law) -> (Box<dyn Body>, Vec<f64>, Vec<f64>) {
 
 /// Whether a cell is valid.
 fn responds(body: &dyn Body, at: &Configuration, ask: Ask, numbers: &mut [f64]) -> bool {
-    let out = Response { numbers, energies: &mut [0.0], memory: &mut [] };
+    let out = Response { numbers, energies: &mut [0.0], memory: &mut [], dissipated: &mut [] };
     body.respond(black_box(CELL), at, ask, out).is_ok()
 }
 

@@ -25,6 +25,8 @@ pub struct PointState {
     pub strain: [[f64; 3]; 3],
     /// Equivalent plastic strain.
     pub plastic_strain: f64,
+    /// Share of the quadrature points of the cell that have yielded.
+    pub yielded: f64,
 }
 
 /// Positions at which a body responds, and what its materials remember.
@@ -69,6 +71,9 @@ pub struct Response<'a> {
     /// Memory of each cell at the end of the step, [`Body::memory`] numbers; not asked for if
     /// empty.
     pub memory: &'a mut [f64],
+    /// Energy that the material of each cell dissipates in the step, from what it remembers of the
+    /// step's start; not asked for if empty.
+    pub dissipated: &'a mut [f64],
 }
 
 /// The shape of a body: its mesh, shape functions, boxes and inverse maps. Node numbers are the
@@ -131,10 +136,6 @@ pub trait Body: Geometry {
     /// Count of numbers that the materials of a cell remember; all are zero at the start of a run.
     fn memory(&self) -> usize;
 
-    /// Energy that the material of a cell dissipates in a step to positions `at`, from what it
-    /// remembers of the step's start.
-    fn cell_dissipated(&self, cell: usize, at: &Configuration) -> f64;
-
     /// Consistent mass of a cell between its nodes (`N²`, row-major): ∫ρ₀ φᵃφᵇ dΩ₀.
     fn cell_mass(&self, cell: usize, mass: &mut [f64]);
 
@@ -170,9 +171,23 @@ pub trait Body: Geometry {
     /// or the law permits J ≤ 0.
     fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64>;
 
-    /// Stress and strain at a point of a cell given in reference coordinates, with what the nearest
-    /// quadrature point remembers.
-    fn point(&self, cell: usize, xi: &[f64], y: &[f64], past: &Past) -> Result<PointState, Inverted>;
+    /// Stress and strain at points of a cell given in reference coordinates; of materials with
+    /// memory projected from the quadrature points, which remember `past`.
+    fn points(
+        &self,
+        cell: usize,
+        places: &[Vec<f64>],
+        y: &[f64],
+        past: &Past,
+    ) -> Vec<Result<PointState, Inverted>>;
+
+    /// Stress and strain at a point of a cell.
+    ///
+    /// # Errors
+    /// J where it is not positive.
+    fn point(&self, cell: usize, xi: &[f64], y: &[f64], past: &Past) -> Result<PointState, Inverted> {
+        self.points(cell, &[xi.to_vec()], y, past).swap_remove(0)
+    }
 }
 
 /// Single cells of materials without memory.
@@ -254,7 +269,8 @@ impl dyn Body + '_ {
         numbers: &mut [f64],
     ) -> Result<f64, Inverted> {
         let mut energy = [0.0];
-        self.respond(cell, at, ask, Response { numbers, energies: &mut energy, memory: &mut [] })?;
+        let out = Response { numbers, energies: &mut energy, memory: &mut [], dissipated: &mut [] };
+        self.respond(cell, at, ask, out)?;
         Ok(energy[0])
     }
 }

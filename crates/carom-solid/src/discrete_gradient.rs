@@ -46,21 +46,29 @@ const OUTER: f64 = 0.387_298_334_620_741_7;
 /// Weight of an outer Gauss point.
 const WEIGHT: f64 = 5.0 / 18.0;
 
-/// W₁ and P. Not inlined: the cost of a call is small in comparison.
+/// A discrete gradient.
+pub(crate) struct Between<const D: usize, P> {
+    /// The law at the end, of an objective one at F̂.
+    pub(crate) end: P,
+    /// P.
+    pub(crate) stress: Mat<D>,
+}
+
+/// The discrete gradient. Not inlined: the cost of a call is small in comparison.
 #[inline(never)]
 pub(crate) fn between<const D: usize, L: Material<D>>(
     law: &L,
     h: [&Mat<D>; 2],
-) -> Result<(f64, Mat<D>), NotPositive> {
+) -> Result<Between<D, L::Point>, NotPositive> {
     if L::OBJECTIVE {
         let path = Path::new(law, h)?;
-        let energy = energy_at(law, &path.ends[1])?;
-        let s = path.middle.stress + path.change * path.phi(law, energy)?;
-        return Ok((energy, path.f * s));
+        let end = law.at(&root(&path.ends[1])?)?;
+        let s = path.middle.stress + path.change * path.phi(law, &end)?;
+        return Ok(Between { end, stress: path.f * s });
     }
     let end = law.at(h[1])?;
     let middle = law.at(&((*h[0] + *h[1]) * 0.5))?;
-    Ok((law.energy(&end), law.stress(&middle)))
+    Ok(Between { end, stress: law.stress(&middle) })
 }
 
 /// ∂P/∂F₁ : dF₁. It is not symmetric: F_m multiplies from the left, F₁ from the right.
@@ -88,6 +96,18 @@ fn energy_at<const D: usize, L: Material<D>>(law: &L, strain: &Mat<D>) -> Result
     Ok(law.energy(&law.at(&root(strain)?)?))
 }
 
+/// S* at a strain, of a law without flow in the step.
+#[inline(always)]
+fn smooth_at<const D: usize, L: Material<D>>(
+    law: &L,
+    strain: &Mat<D>,
+) -> Result<AtStrain<D, L::Point>, NotPositive> {
+    let excess = root(strain)?;
+    let point = law.at(&excess)?;
+    let point = law.unevolved(&point).unwrap_or(point);
+    Ok(AtStrain::of(law, point, &excess))
+}
+
 /// A law at a strain.
 struct AtStrain<const D: usize, P> {
     /// The law at F̂.
@@ -96,36 +116,21 @@ struct AtStrain<const D: usize, P> {
     inverse: Mat<D>,
     /// S.
     stress: Mat<D>,
-    /// The smooth part of a law that yields.
-    unevolved: Option<(P, Mat<D>)>,
 }
 
 impl<const D: usize, P> AtStrain<D, P> {
     #[inline(always)]
-    fn new<L: Material<D, Point = P>>(law: &L, strain: &Mat<D>) -> Result<Self, NotPositive> {
-        let excess = root(strain)?;
-        let point = law.at(&excess)?;
-        let inverse = (Mat::identity() + excess).inverse();
+    fn of<L: Material<D, Point = P>>(law: &L, point: P, excess: &Mat<D>) -> Self {
+        let inverse = (Mat::identity() + *excess).inverse();
         let stress = symmetric(&(inverse * law.stress(&point)));
-        let unevolved = law.unevolved(&point).map(|unevolved| {
-            let stress = symmetric(&(inverse * law.stress(&unevolved)));
-            (unevolved, stress)
-        });
-        Ok(Self { point, inverse, stress, unevolved })
+        Self { point, inverse, stress }
     }
 
-    /// The smooth part S* of S.
+    /// S of another point at the same strain.
     #[inline(always)]
-    fn smooth(&self) -> &Mat<D> {
-        self.unevolved.as_ref().map_or(&self.stress, |(_, stress)| stress)
-    }
-
-    /// ∂S*/∂E : dE.
-    #[inline(always)]
-    fn smooth_change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Mat<D> {
-        let Some((point, stress)) = &self.unevolved else { return self.change(law, de) };
-        let df = self.inverse.transposed() * *de;
-        self.inverse * (law.change(point, &df) - df * *stress)
+    fn replaced<L: Material<D, Point = P>>(&self, law: &L, point: P) -> Self {
+        let stress = symmetric(&(self.inverse * law.stress(&point)));
+        Self { point, inverse: self.inverse, stress }
     }
 
     /// ∂S/∂E : dE.
@@ -142,6 +147,8 @@ struct Path<const D: usize, P> {
     ends: [Mat<D>; 2],
     /// The law at E_m.
     middle: AtStrain<D, P>,
+    /// Its smooth part, of a law that yields.
+    unevolved: Option<AtStrain<D, P>>,
     /// F_m.
     f: Mat<D>,
     /// ΔE.
@@ -169,73 +176,75 @@ impl<const D: usize, P> Path<D, P> {
         let change = symmetric(&(f.transposed() * (*h[1] - *h[0])));
         let square = change.double_dot(&change);
         let corrected = square > f64::EPSILON * middle_strain.double_dot(&middle_strain);
-        Ok(Self { ends, middle: AtStrain::new(law, &middle_strain)?, f, change, square, corrected })
+        let excess = root(&middle_strain)?;
+        let middle = AtStrain::of(law, law.at(&excess)?, &excess);
+        let unevolved = law.unevolved(&middle.point).map(|point| middle.replaced(law, point));
+        Ok(Self { ends, middle, unevolved, f, change, square, corrected })
     }
 
-    /// The law at E₊ and E₋.
+    /// The smooth part at E_m.
+    #[inline(always)]
+    fn smooth(&self) -> &AtStrain<D, P> {
+        self.unevolved.as_ref().unwrap_or(&self.middle)
+    }
+
+    /// The smooth part at E₊ and E₋.
     #[inline(always)]
     fn outer<L: Material<D, Point = P>>(&self, law: &L) -> Result<[AtStrain<D, P>; 2], NotPositive> {
         let middle = (self.ends[0] + self.ends[1]) * 0.5;
         let offset = self.change * OUTER;
-        Ok([AtStrain::new(law, &(middle + offset))?, AtStrain::new(law, &(middle - offset))?])
+        Ok([smooth_at(law, &(middle + offset))?, smooth_at(law, &(middle - offset))?])
     }
 
     /// S*(E₊) + S*(E₋) − 2 S*(E_m), times the weight.
     #[inline(always)]
     fn curvature(&self, outer: &[AtStrain<D, P>; 2]) -> Mat<D> {
-        let above = *outer[0].smooth() - *self.middle.smooth();
-        let below = *outer[1].smooth() - *self.middle.smooth();
+        let smooth = self.smooth().stress;
+        let above = outer[0].stress - smooth;
+        let below = outer[1].stress - smooth;
         (above + below) * WEIGHT
     }
 
     /// Whether the work is the difference of the energies: in long steps, and where flow begins of
     /// which ψ is not known.
     #[inline(always)]
-    fn by_difference<L: Material<D, Point = P>>(&self, law: &L) -> Result<bool, NotPositive> {
-        if self.square > GAUSS || !L::YIELDS || self.middle.unevolved.is_some() {
-            return Ok(self.square > GAUSS);
-        }
+    fn by_difference<L: Material<D, Point = P>>(&self, law: &L, end: &P) -> bool {
         let flows = |point: &P| law.released(point) > 0.0;
-        Ok(flows(&self.middle.point) || flows(&law.at(&root(&self.ends[1])?)?))
+        let is_unknown = L::YIELDS && self.unevolved.is_none();
+        self.square > GAUSS || is_unknown && (flows(&self.middle.point) || flows(end))
     }
 
     /// −(ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE.
     #[inline(always)]
-    fn released<L: Material<D, Point = P>>(&self, law: &L) -> Result<f64, NotPositive> {
-        if self.middle.unevolved.is_none() {
-            return Ok(0.0);
-        }
-        let mut released = [0.0; 2];
-        for (released, strain) in released.iter_mut().zip(&self.ends) {
-            *released = law.released(&law.at(&root(strain)?)?);
-        }
-        let flown = self.middle.stress - *self.middle.smooth();
-        Ok(released[0] - released[1] - flown.double_dot(&self.change))
+    fn released<L: Material<D, Point = P>>(&self, law: &L, end: &P) -> Result<f64, NotPositive> {
+        let Some(unevolved) = &self.unevolved else { return Ok(0.0) };
+        let start = law.released(&law.at(&root(&self.ends[0])?)?);
+        let flown = self.middle.stress - unevolved.stress;
+        Ok(start - law.released(end) - flown.double_dot(&self.change))
     }
 
     /// The derivative of [`Self::released`] along dE.
     #[inline(always)]
-    fn released_change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Result<f64, NotPositive> {
-        if self.middle.unevolved.is_none() {
-            return Ok(0.0);
-        }
-        let end = AtStrain::new(law, &self.ends[1])?;
+    fn released_change<L: Material<D, Point = P>>(&self, law: &L, end: &AtStrain<D, P>, de: &Mat<D>) -> f64 {
+        let Some(unevolved) = &self.unevolved else { return 0.0 };
+        let Some(end_unevolved) = law.unevolved(&end.point) else { return 0.0 };
         let half = *de * 0.5;
-        let flown = (end.stress - *end.smooth()) - (self.middle.stress - *self.middle.smooth());
-        let change = self.middle.change(law, &half) - self.middle.smooth_change(law, &half);
-        Ok(flown.double_dot(de) - change.double_dot(&self.change))
+        let end_flown = end.stress - end.replaced(law, end_unevolved).stress;
+        let flown = end_flown - (self.middle.stress - unevolved.stress);
+        let change = self.middle.change(law, &half) - unevolved.change(law, &half);
+        flown.double_dot(de) - change.double_dot(&self.change)
     }
 
-    /// φ, with W₁.
+    /// φ.
     #[inline(always)]
-    fn phi<L: Material<D, Point = P>>(&self, law: &L, end: f64) -> Result<f64, NotPositive> {
+    fn phi<L: Material<D, Point = P>>(&self, law: &L, end: &P) -> Result<f64, NotPositive> {
         if !self.corrected {
             return Ok(0.0);
         }
-        let excess_work = if self.by_difference(law)? {
-            end - energy_at(law, &self.ends[0])? - self.middle.stress.double_dot(&self.change)
+        let excess_work = if self.by_difference(law, end) {
+            law.energy(end) - energy_at(law, &self.ends[0])? - self.middle.stress.double_dot(&self.change)
         } else {
-            self.curvature(&self.outer(law)?).double_dot(&self.change) + self.released(law)?
+            self.curvature(&self.outer(law)?).double_dot(&self.change) + self.released(law, end)?
         };
         Ok(excess_work / self.square)
     }
@@ -250,22 +259,35 @@ impl<const D: usize, P> Path<D, P> {
         if !self.corrected {
             return Ok([0.0, 0.0]);
         }
-        let [phi, excess_change] = if self.by_difference(law)? {
-            let end = AtStrain::new(law, &self.ends[1])?;
-            let phi = self.phi(law, law.energy(&end.point))?;
-            let by_stress = (end.stress - self.middle.stress).double_dot(de);
-            let middle_change = self.middle.change(law, &(*de * 0.5));
-            [phi, by_stress - middle_change.double_dot(&self.change)]
+        let needs_end = L::YIELDS || self.square > GAUSS;
+        let end = if needs_end {
+            let excess = root(&self.ends[1])?;
+            Some(AtStrain::of(law, law.at(&excess)?, &excess))
         } else {
-            let outer = self.outer(law)?;
-            let curvature = self.curvature(&outer);
-            let middle = self.middle.smooth_change(law, &(*de * 0.5));
-            let above = outer[0].smooth_change(law, &(*de * (0.5 + OUTER))) - middle;
-            let below = outer[1].smooth_change(law, &(*de * (0.5 - OUTER))) - middle;
-            let curvature_change = (above + below) * WEIGHT;
-            let phi = (curvature.double_dot(&self.change) + self.released(law)?) / self.square;
-            let smooth = curvature_change.double_dot(&self.change) + curvature.double_dot(de);
-            [phi, smooth + self.released_change(law, de)?]
+            None
+        };
+        let [phi, excess_change] = match end {
+            Some(end) if self.by_difference(law, &end.point) => {
+                let phi = self.phi(law, &end.point)?;
+                let by_stress = (end.stress - self.middle.stress).double_dot(de);
+                let middle_change = self.middle.change(law, &(*de * 0.5));
+                [phi, by_stress - middle_change.double_dot(&self.change)]
+            }
+            end => {
+                let outer = self.outer(law)?;
+                let curvature = self.curvature(&outer);
+                let middle = self.smooth().change(law, &(*de * 0.5));
+                let above = outer[0].change(law, &(*de * (0.5 + OUTER))) - middle;
+                let below = outer[1].change(law, &(*de * (0.5 - OUTER))) - middle;
+                let curvature_change = (above + below) * WEIGHT;
+                let mut work = curvature.double_dot(&self.change);
+                let mut change = curvature_change.double_dot(&self.change) + curvature.double_dot(de);
+                if let Some(end) = &end {
+                    work += self.released(law, &end.point)?;
+                    change += self.released_change(law, end, de);
+                }
+                [work / self.square, change]
+            }
         };
         Ok([phi, (excess_change - 2.0 * phi * self.change.double_dot(de)) / self.square])
     }

@@ -34,7 +34,7 @@ pub trait VolumeAveraged {
     /// Parts of the law in plane strain.
     fn averaged_in_plane(&self) -> AveragedAtPoints<2>;
 
-    /// Its parts in space.
+    /// Parts of the law in space.
     fn averaged_in_space(&self) -> AveragedAtPoints<3>;
 }
 
@@ -130,6 +130,8 @@ impl Law {
             Self::SaintVenantKirchhoff { lambda, mu } => Box::new(SaintVenantKirchhoff { lambda, mu }),
             Self::LinearElastic { lambda, mu } => Box::new(LinearElastic { lambda, mu }),
             Self::Hencky { lambda, mu } => Box::new(Hencky { lambda, mu }),
+            Self::MooneyRivlin(law) => Box::new(law),
+            Self::Yeoh(law) => Box::new(law),
         }
     }
 }

@@ -295,6 +295,7 @@ mod constant;
 mod integrals;
 mod mean;
 mod memory;
+mod projection;
 mod rotation;
 #[cfg(test)]
 mod rules;

@@ -24,9 +24,28 @@ pub struct MaterialSpec {
     pub lambda: f64,
     /// Second Lamé constant μ.
     pub mu: f64,
+    /// Constants of the laws of the isochoric invariants; zero of others.
+    #[serde(default, skip_serializing_if = "InvariantsSpec::is_none")]
+    pub invariants: InvariantsSpec,
     /// Plastic flow; none of an elastic material.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plastic: Option<PlasticSpec>,
+}
+
+/// Constants Cᵢⱼ of (Ī₁ − 3)ⁱ (Ī₂ − 3)ʲ in the strain energy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub struct InvariantsSpec {
+    pub c10: f64,
+    pub c01: f64,
+    pub c20: f64,
+    pub c30: f64,
+}
+
+impl InvariantsSpec {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// Yield stress over the equivalent plastic strain α.
@@ -48,7 +67,8 @@ pub enum PlasticSpec {
     Table(Vec<[f64; 2]>),
 }
 
-/// A material, given by lambda and mu or by young and poisson.
+/// A material, given by lambda and mu or by young and poisson; rubber of the laws `mooney-rivlin`
+/// and `yeoh` by the constants of its energy and a bulk modulus.
 #[derive(Keys)]
 #[keys(name = "[[material]]", later = ["viscosity", "damping"])]
 pub(crate) struct MaterialKeys {
@@ -74,6 +94,21 @@ pub(crate) struct MaterialKeys {
     /// its bulk modulus infinite.
     #[key(Number(Range { low: Some((-1.0, false)), high: Some((0.5, false)) }), example = "0.49")]
     poisson: Option<f64>,
+    /// Constant C₁₀ of the laws `mooney-rivlin` and `yeoh`.
+    #[key(Number(POSITIVE), unit = "mass/(length·time²)", example = "0.4")]
+    c10: Option<f64>,
+    /// Constant C₀₁ of the law `mooney-rivlin`; 2 (C₁₀ + C₀₁) is the shear modulus.
+    #[key(Number(NOT_NEGATIVE), unit = "mass/(length·time²)", example = "0.1")]
+    c01: Option<f64>,
+    /// Constant C₂₀ of the law `yeoh`; often negative.
+    #[key(unit = "mass/(length·time²)", example = "-0.02")]
+    c20: Option<f64>,
+    /// Constant C₃₀ of the law `yeoh`: it stiffens at large stretches.
+    #[key(Number(NOT_NEGATIVE), unit = "mass/(length·time²)", example = "0.004")]
+    c30: Option<f64>,
+    /// Bulk modulus K of the laws `mooney-rivlin` and `yeoh`.
+    #[key(Number(POSITIVE), unit = "mass/(length·time²)", example = "50.0")]
+    bulk: Option<f64>,
     /// Plastic flow by von Mises's yield condition with isotropic hardening; with the law `hencky`.
     /// Default: none.
     #[key(example = "{ yield = 355.0, hardening = 1000.0 }")]
@@ -194,13 +229,66 @@ pub(crate) fn materials(v: &View) -> Option<Vec<Option<MaterialSpec>>> {
 
 impl MaterialKeys {
     fn resolved(self, v: &View) -> Option<MaterialSpec> {
-        let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
-        let Self { name, law, density, lambda, mu, young, poisson, plastic } = self;
-        if v.has("plastic") && law != Law::Hencky {
-            let what = format!("the law \"{}\" does not yield", law.word());
+        if v.has("plastic") && self.law != Law::Hencky {
+            let what = format!("the law \"{}\" does not yield", self.law.word());
             let why = "plastic flow is computed in logarithmic strains, those of the law \"hencky\"";
             return v.wrong_key("plastic", what, why, "write `law = \"hencky\"`, or leave `plastic` out");
         }
+        let wanted: &[&str] = match self.law {
+            Law::MooneyRivlin => &["c10", "c01", "bulk"],
+            Law::Yeoh => &["c10", "c20", "c30", "bulk"],
+            _ => return self.of_two_constants(v),
+        };
+        let is_wrong = |key: &&str| v.has(key) && !wanted.contains(key);
+        let constants = ["lambda", "mu", "young", "poisson", "c10", "c01", "c20", "c30", "bulk"];
+        let law = self.law.word();
+        if let Some(key) = constants.into_iter().find(is_wrong) {
+            let what = format!("the law \"{law}\" has no constant `{key}`");
+            let why = format!("its constants are {}", wanted.join(", "));
+            return v.wrong_key(key, what, why, format!("leave out `{key}`, or choose another law"));
+        }
+        if let Some(key) = wanted.iter().find(|key| !v.has(key)) {
+            let what = format!("the law \"{law}\" lacks its constant `{key}`");
+            let why = format!("its constants are {}", wanted.join(", "));
+            return v.wrong("", what, why, format!("give `{key}`; 0.0 where the energy has no such term"));
+        }
+        self.of_invariants(v)
+    }
+
+    /// A material of the isochoric invariants.
+    fn of_invariants(self, v: &View) -> Option<MaterialSpec> {
+        let Self { name, law, density, c10, c01, c20, c30, bulk, .. } = self;
+        let given = |key: &str, value: Option<f64>| if v.has(key) { value } else { Some(0.0) };
+        let invariants = InvariantsSpec {
+            c10: c10?,
+            c01: given("c01", c01)?,
+            c20: given("c20", c20)?,
+            c30: given("c30", c30)?,
+        };
+        let InvariantsSpec { c10, c01, c20, c30 } = invariants;
+        // dΨ/dĪ₁ = c10 + 2 c20 x + 3 c30 x² is smallest at x = −c20/(3 c30).
+        if c20 < 0.0 && c20 * c20 >= 3.0 * c10 * c30 {
+            let what = format!("rubber with c10 = {c10}, c20 = {c20}, c30 = {c30} loses its strength");
+            let why = "the derivative c10 + 2 c20 x + 3 c30 x² of its energy vanishes at an x = Ī₁ − 3 > 0, from \
+                       which on it is stretched by no force";
+            let help = format!("c30 > c20²/(3 c10) = {}", c20 * c20 / (3.0 * c10));
+            return v.wrong("c20", what, why, help);
+        }
+        let mu = 2.0 * (c10 + c01);
+        let lambda = bulk? - 2.0 * mu / 3.0;
+        Some(MaterialSpec { name, law, density, lambda, mu, invariants, plastic: None })
+    }
+
+    /// A material of two elastic constants.
+    fn of_two_constants(self, v: &View) -> Option<MaterialSpec> {
+        if let Some(key) = ["c10", "c01", "c20", "c30", "bulk"].into_iter().find(|key| v.has(key)) {
+            let what = format!("the law \"{}\" has no constant `{key}`", self.law.word());
+            let why = "it is one of the laws \"mooney-rivlin\" and \"yeoh\"";
+            return v.wrong_key(key, what, why, format!("leave out `{key}`, or choose such a law"));
+        }
+        let given: Vec<_> = ["lambda", "mu", "young", "poisson"].into_iter().filter(|k| v.has(k)).collect();
+        let Self { name, law, density, lambda, mu, young, poisson, plastic, .. } = self;
+        let invariants = InvariantsSpec::default();
         let plastic = if v.has("plastic") { Some(plastic?.resolved(&v.at("plastic")?)?) } else { None };
         match given.as_slice() {
             ["lambda", "mu"] => {
@@ -213,14 +301,14 @@ impl MaterialKeys {
                     let why = format!("the bulk modulus Λ + 2μ/3 = {} must be > 0", lambda + 2.0 * mu / 3.0);
                     v.wrong::<()>("lambda", what, why, format!("lambda must be > {}", -2.0 * mu / 3.0));
                 }
-                Some(MaterialSpec { name, law, density, lambda, mu, plastic })
+                Some(MaterialSpec { name, law, density, lambda, mu, invariants, plastic })
             }
             ["young", "poisson"] => {
                 let young = young?;
                 let poisson = poisson?;
                 let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
                 let mu = young / (2.0 * (1.0 + poisson));
-                Some(MaterialSpec { name, law, density, lambda, mu, plastic })
+                Some(MaterialSpec { name, law, density, lambda, mu, invariants, plastic })
             }
             given => {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
@@ -287,6 +375,11 @@ pub enum Law {
     /// Logarithmic strain ε = ½ ln F Fᵀ, Ψ = Λ/2 (tr ε)² + μ ε : ε; the law of metals, which may
     /// yield (`plastic`).
     Hencky,
+    /// Rubber: Ψ = c10 (Ī₁ − 3) + c01 (Ī₂ − 3) + bulk/2 (ln J)² with the isochoric invariants of
+    /// FᵀF.
+    MooneyRivlin,
+    /// Rubber that stiffens: Ψ = c10 x + c20 x² + c30 x³ + bulk/2 (ln J)², x = Ī₁ − 3.
+    Yeoh,
 }
 
 /// A deformable body; its sides are written name.side.

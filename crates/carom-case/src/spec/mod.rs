@@ -13,7 +13,7 @@ mod polygon;
 mod tie;
 mod time;
 
-pub use body::{BodySpec, Law, MassKind, MaterialSpec, Plane, PlasticSpec, Volumetric};
+pub use body::{BodySpec, InvariantsSpec, Law, MassKind, MaterialSpec, Plane, PlasticSpec, Volumetric};
 pub(crate) use body::{MaterialKeys, materials};
 pub use case::{Case, InitialSpec, Preset, Units, Velocities};
 pub use contact::{

@@ -18,13 +18,14 @@ pub struct ProbeSpec {
     /// Body it belongs to.
     #[key(Name, example = "\"cylinder\"")]
     pub body: String,
-    /// Where materials of a body meet: the one of which stress and volume ratio are recorded, which
-    /// have a value on each side.
+    /// Where materials of a body meet: the one of which stress, strain and volume ratio are
+    /// recorded, which have a value on each side.
     #[key(Name, optional = "\"pad\"")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
     /// Recorded quantities: displacement, velocity, acceleration, Cauchy stress, von Mises stress,
-    /// volume ratio, equivalent plastic strain.
+    /// volume ratio, equivalent plastic strain, the share of quadrature points that have yielded,
+    /// Green–Lagrange strain.
     #[key(Choices(Quantity::WORDS), example = "[\"uy\", \"sigma_yy\"]")]
     pub record: Vec<Quantity>,
 }
@@ -70,6 +71,13 @@ pub enum Quantity {
     VonMises,
     DetF,
     PlasticStrain,
+    Yielded,
+    StrainXx,
+    StrainYy,
+    StrainZz,
+    StrainXy,
+    StrainYz,
+    StrainXz,
 }
 
 /// What is written, and how often.

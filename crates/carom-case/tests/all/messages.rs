@@ -15,7 +15,7 @@ fn word_by_word() {
         "a/case.toml:11:1: unknown key `densty` in [[material]]
   densty = 0.25
   ^^^^^^
-why: the keys of [[material]] are: name, law, density, lambda, mu, young, poisson, plastic
+why: the keys of [[material]] are: name, law, density, lambda, mu, young, poisson, c10, c01, c20, c30, bulk, plastic
 try: did you mean `density`?"
     );
     assert_eq!(

@@ -21,7 +21,8 @@ pub(crate) fn each_tangent(
         let n = mesh.element.dofs();
         let numbers = n + n * n;
         let compute = |first: usize, numbers: &mut [f64], energies: &mut [f64]| {
-            part.body.respond(first, &at, Ask::Tangent, Response { numbers, energies, memory: &mut [] })
+            let out = Response { numbers, energies, memory: &mut [], dissipated: &mut [] };
+            part.body.respond(first, &at, Ask::Tangent, out)
         };
         let add = cells::added_one_by_one(numbers, |cell, local: &[f64]| add(part, cell, &local[n..]));
         cells::for_each(&model.threads, mesh.cell_count(), numbers, compute, add)

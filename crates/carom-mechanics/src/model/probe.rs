@@ -21,12 +21,16 @@ pub enum Quantity {
     Acceleration(usize),
     /// A component of the Cauchy stress.
     Stress(usize, usize),
+    /// A component of the Green–Lagrange strain.
+    Strain(usize, usize),
     /// The von Mises stress of the Cauchy stress.
     VonMises,
     /// Volume ratio J.
     DetF,
-    /// Equivalent plastic strain of the nearest quadrature point.
+    /// Equivalent plastic strain.
     PlasticStrain,
+    /// Share of the quadrature points that have yielded.
+    Yielded,
 }
 
 /// A resolved probe.
@@ -90,7 +94,9 @@ impl Probe {
                 (_, Ok(p)) => Some(match quantity {
                     Quantity::Stress(i, j) => p.cauchy[i][j],
                     Quantity::VonMises => von_mises(&p.cauchy),
+                    Quantity::Strain(i, j) => p.strain[i][j],
                     Quantity::PlasticStrain => p.plastic_strain,
+                    Quantity::Yielded => p.yielded,
                     _ => p.det_f,
                 }),
             };

@@ -109,6 +109,13 @@ impl std::fmt::Debug for Model {
     }
 }
 
+/// Sums over the cells of a body with memory.
+struct Remembering<'a> {
+    force: &'a mut [f64],
+    memory: &'a mut [f64],
+    lost: &'a mut f64,
+}
+
 impl Model {
     /// Number of dofs, including constrained ones.
     pub fn dofs(&self) -> usize {
@@ -166,7 +173,8 @@ impl Model {
     }
 
     /// Internal forces ∂U/∂y, or their discrete gradient over a step, overwriting `force`, and in
-    /// `trial` what materials with memory remember and store. Returns the stored energy U.
+    /// `trial` what materials with memory remember, store and dissipate. Returns the stored energy
+    /// U.
     ///
     /// # Errors
     /// The body's name and the inverted cell.
@@ -184,24 +192,14 @@ impl Model {
         let memory = Arc::make_mut(&mut trial.memory);
         let mut rest = &mut memory[..];
         let mut strain = 0.0;
-        for ((part, at), stored) in self.configurations(at).zip(&mut trial.stored) {
+        let energies = trial.stored.iter_mut().zip(&mut trial.lost);
+        for ((part, at), (stored, lost)) in self.configurations(at).zip(energies) {
             let memory = rest.split_off_mut(..part.memory()).unwrap_or_default();
-            *stored = self.add_remembering(part, &at, force, memory)?;
+            *lost = 0.0;
+            *stored = self.add_remembering(part, &at, Remembering { force, memory, lost })?;
             strain += *stored;
         }
         Ok(strain)
-    }
-
-    /// Energy that each body dissipates in a step to positions `at`; none if no material remembers.
-    pub(crate) fn dissipated(&self, at: &Configuration) -> Vec<f64> {
-        if !self.remembers() {
-            return Vec::new();
-        }
-        let of_part = |(part, at): (&BodyInstance, Configuration)| -> f64 {
-            let cells = if part.memory() > 0 { part.body.mesh().cell_count() } else { 0 };
-            (0..cells).map(|cell| part.body.cell_dissipated(cell, &at)).sum()
-        };
-        self.configurations(at).map(of_part).collect()
     }
 
     /// ∂f_int/∂y · `change`, overwriting `product`; with positions before, that of the discrete
@@ -231,7 +229,12 @@ impl Model {
             };
             let add = |first: usize, locals: &[f64]| part.body.add_cells(first, locals, own);
             let compute = |first: usize, numbers: &mut [f64], energies: &mut [f64]| {
-                part.body.respond(first, &at, ask, Response { numbers, energies, memory: &mut [] })
+                part.body.respond(
+                    first,
+                    &at,
+                    ask,
+                    Response { numbers, energies, memory: &mut [], dissipated: &mut [] },
+                )
             };
             strain += cells::for_each(&self.threads, mesh.cell_count(), mesh.element.dofs(), compute, add)
                 .map_err(|inverted| (part.name.clone(), inverted))?;
@@ -239,31 +242,35 @@ impl Model {
         Ok(strain)
     }
 
-    /// Adds the forces of a body, and overwrites its memory; returns the energy that it stores.
+    /// Adds the forces of a body and what it dissipates, and overwrites its memory; returns the
+    /// energy that it stores.
     fn add_remembering(
         &self,
         part: &BodyInstance,
         at: &Configuration,
-        force: &mut [f64],
-        memory: &mut [f64],
+        out: Remembering,
     ) -> Result<f64, (String, Inverted)> {
+        let Remembering { force, memory, lost } = out;
         let mesh = part.body.mesh();
         let dofs = mesh.element.dofs();
         let size = part.body.memory();
         let own = part.of_mut(force);
-        // The numbers of a cell are its force and its memory.
-        let compute = cells::one_by_one(dofs + size, |cell, local: &mut [f64]| {
-            let (numbers, memory) = local.split_at_mut(dofs);
+        // The numbers of a cell are its force, its memory, and what it dissipates.
+        let count = dofs + size + 1;
+        let compute = cells::one_by_one(count, |cell, local: &mut [f64]| {
+            let (numbers, rest) = local.split_at_mut(dofs);
+            let (memory, dissipated) = rest.split_at_mut(size);
             let mut energies = [0.0];
-            let out = Response { numbers, energies: &mut energies, memory };
+            let out = Response { numbers, energies: &mut energies, memory, dissipated };
             part.body.respond(cell, at, Ask::Force, out)?;
             Ok(energies[0])
         });
-        let add = cells::added_one_by_one(dofs + size, |cell, local: &[f64]| {
+        let add = cells::added_one_by_one(count, |cell, local: &[f64]| {
             part.body.add_cells(cell, &local[..dofs], own);
-            memory[cell * size..(cell + 1) * size].copy_from_slice(&local[dofs..]);
+            memory[cell * size..(cell + 1) * size].copy_from_slice(&local[dofs..dofs + size]);
+            *lost += local[dofs + size];
         });
-        cells::for_each(&self.threads, mesh.cell_count(), dofs + size, compute, add)
+        cells::for_each(&self.threads, mesh.cell_count(), count, compute, add)
             .map_err(|inverted| (part.name.clone(), inverted))
     }
 

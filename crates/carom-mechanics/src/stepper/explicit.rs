@@ -150,7 +150,7 @@ impl Explicit {
                 ledger.external_work += dt * start.half_step.velocity[i] * 0.5 * (before + now);
             }
         }
-        book_materials(model, start, next, dt);
+        book_materials(next);
         let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
         if in_contact(start) || in_contact(next) {
             let velocity = &start.half_step.velocity;

@@ -142,7 +142,7 @@ impl Stepper for Impulsive {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
-        book_materials(model, state, &mut next, dt);
+        book_materials(&mut next);
         let carried = self.scheme.alpha().map_or(0.0, |alpha| alpha.carried());
         next.ledger.unbooked -= carried * change_of_loads(state, &next, &solved.at.increment);
         impulses.record(dt, &mut next, &mut pairings);

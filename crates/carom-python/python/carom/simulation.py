@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,6 +54,14 @@ class Simulation:
         The case; later changes of it have no effect.
     threads : int, optional
         Number of threads, by default one per core; the result does not depend on it.
+    laws : mapping of str to object, optional
+        Laws of your own by the name of their material. A law has an attribute ``memory``, the count
+        of numbers (at most 16) that a quadrature point remembers, all zero at first, and a method
+        ``response(F, memory)`` that returns ``(stored, dissipated, P, dP/dF, memory)``: the energy
+        that is stored, the one that is dissipated in the step, the first Piola–Kirchhoff stress of
+        shape (3, 3), its derivative by F of shape (3, 3, 3, 3), and the memory at the end of the
+        step. P is the derivative of the sum of both energies by F, and everything depends on
+        ``F.T @ F`` alone. It is called for each point and evaluation, some ten microseconds each.
 
     Examples
     --------
@@ -69,8 +77,12 @@ class Simulation:
     (0.5, [0])
     """
 
-    def __init__(self, case: Case, threads: int | None = None) -> None:
-        self._core = _carom.Simulation(case._core, concurrency("threads", threads), case._functions)
+    def __init__(
+        self, case: Case, threads: int | None = None, laws: Mapping[str, object] | None = None
+    ) -> None:
+        self._core = _carom.Simulation(
+            case._core, concurrency("threads", threads), case._functions, dict(laws or {})
+        )
         self._columns = self._core.columns()
 
     def advance(self) -> Step:

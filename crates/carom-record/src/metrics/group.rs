@@ -38,6 +38,7 @@ const GROUPS: [Group; 7] = [
             "energy_error",
             "dissipated_integrator",
             "plastic_lost",
+            "permanent_set",
             "dissipated_contact",
         ],
     },

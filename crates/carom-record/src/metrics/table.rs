@@ -11,7 +11,7 @@ use super::{force, ledger, oscillation};
 use crate::units::Unit;
 
 /// Metrics of a history.
-pub(super) const HISTORY: [Definition; 28] = [
+pub(super) const HISTORY: [Definition; 29] = [
     d(
         "contact_start",
         Unit::Time,
@@ -175,6 +175,14 @@ pub(super) const HISTORY: [Definition; 28] = [
         OWN,
         "energy dissipated by plastic flow by the end, divided by the largest kinetic + strain energy",
         ledger::by_flow,
+    ),
+    d(
+        "permanent_set",
+        Unit::None,
+        "max BODY.plastic_strain_last",
+        OWN,
+        "largest equivalent plastic strain that remains at the end, over the quadrature points of all bodies",
+        ledger::permanent_set,
     ),
     d(
         "slip_distance",

@@ -111,6 +111,8 @@ fn material(material: &MaterialSpec, units: &Units) -> Row {
         Law::SaintVenantKirchhoff => "Saint Venant–Kirchhoff",
         Law::LinearElastic => "linear elastic",
         Law::Hencky => "Hencky",
+        Law::MooneyRivlin => "Mooney–Rivlin",
+        Law::Yeoh => "Yeoh",
     };
     let poisson = lambda / (2.0 * (lambda + mu));
     let [young, lambda, shear] =

@@ -24,13 +24,13 @@ use std::collections::BTreeMap;
 
 use carom_algebra::Threads;
 use carom_case::{
-    BodySpec, Case, FormulaSpec, MassKind, MaterialSpec, Plane, PlasticSpec, ProbeSpec, Problem, SKIN,
-    TieSpec, Volumetric,
+    BodySpec, Case, FormulaSpec, InvariantsSpec, MassKind, MaterialSpec, Plane, PlasticSpec, ProbeSpec,
+    Problem, SKIN, TieSpec, Volumetric,
 };
 use carom_mechanics::model::{
     BodyInstance, Mass, Model, Probe, Quantity, free_motions, gap_tolerance, redistribute, value,
 };
-use carom_solid::material::{Hardening, Hencky, J2, Table};
+use carom_solid::material::{Hardening, Hencky, Isochoric, J2, MooneyRivlin, Table, Yeoh};
 use carom_solid::{
     Body, Constitutive, Law, Mesh, PlaneState, RegionMaterial, SolidError, VolumeAveraged, body_of_regions,
     mean_dilatation_body,
@@ -327,11 +327,20 @@ fn plastic(material: &MaterialSpec) -> Option<J2> {
 fn law(material: &MaterialSpec) -> Law {
     let lambda = material.lambda;
     let mu = material.mu;
+    let bulk = lambda + 2.0 * mu / 3.0;
     match material.law {
         carom_case::Law::NeoHookean => Law::NeoHookean { lambda, mu },
         carom_case::Law::SaintVenantKirchhoff => Law::SaintVenantKirchhoff { lambda, mu },
         carom_case::Law::LinearElastic => Law::LinearElastic { lambda, mu },
         carom_case::Law::Hencky => Law::Hencky { lambda, mu },
+        carom_case::Law::MooneyRivlin => {
+            let InvariantsSpec { c10, c01, .. } = material.invariants;
+            Law::MooneyRivlin(Isochoric { of: MooneyRivlin { c10, c01 }, bulk })
+        }
+        carom_case::Law::Yeoh => {
+            let InvariantsSpec { c10, c20, c30, .. } = material.invariants;
+            Law::Yeoh(Isochoric { of: Yeoh { c10, c20, c30 }, bulk })
+        }
     }
 }
 
@@ -440,12 +449,18 @@ fn on_one_side(
     let has_sides = |name: &carom_case::Quantity| {
         matches!(
             quantity(*name),
-            Quantity::Stress(..) | Quantity::VonMises | Quantity::DetF | Quantity::PlasticStrain
+            Quantity::Stress(..)
+                | Quantity::Strain(..)
+                | Quantity::VonMises
+                | Quantity::DetF
+                | Quantity::PlasticStrain
+                | Quantity::Yielded
         )
     };
     (there.len() > 1 && spec.record.iter().any(has_sides)).then(|| {
         let what = format!("probe \"{}\" lies where materials meet", spec.name);
-        let why = format!("stress and volume ratio have a value in each of {} there", there.join(", "));
+        let why =
+            format!("stress, strain and volume ratio have a value in each of {} there", there.join(", "));
         let help = format!("choose one, for example `material = \"{}\"`", there[0]);
         Problem::new(format!("probe[{k}].at"), what, why, help)
     })
@@ -473,5 +488,12 @@ pub(crate) fn quantity(name: carom_case::Quantity) -> Quantity {
         Name::VonMises => Quantity::VonMises,
         Name::DetF => Quantity::DetF,
         Name::PlasticStrain => Quantity::PlasticStrain,
+        Name::Yielded => Quantity::Yielded,
+        Name::StrainXx => Quantity::Strain(0, 0),
+        Name::StrainYy => Quantity::Strain(1, 1),
+        Name::StrainZz => Quantity::Strain(2, 2),
+        Name::StrainXy => Quantity::Strain(0, 1),
+        Name::StrainYz => Quantity::Strain(1, 2),
+        Name::StrainXz => Quantity::Strain(0, 2),
     }
 }

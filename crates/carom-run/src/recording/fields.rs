@@ -1,5 +1,6 @@
 //! A state as fields for viewers: displacement, velocity, stress (nodal mean within each body) with
-//! its von Mises and principal stresses, principal strains, contact pressure, and plastic strain.
+//! its von Mises and principal stresses, principal strains, contact pressure, plastic strain, and
+//! where it has yielded.
 //!
 //! Principal strains are logarithmic (H. Hencky, Z. techn. Phys. 9, 1928): ln λᵢ with the principal
 //! stretches λᵢ, the same in the reference and the current configuration, of nodal means of the
@@ -27,7 +28,7 @@ pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: 
     };
     // The nodes that carry obstacles come last, and belong to no body.
     let nodes = model.parts.iter().filter(|part| !part.is_rigid()).map(|p| p.nodes().end).max().unwrap_or(0);
-    let Means { stress, strain, plastic } = nodal_means(model, state);
+    let Means { stress, strain, plastic, yielded } = nodal_means(model, state);
     let mises: Vec<f64> = stress.iter().map(|s| von_mises(&tensor(s))).collect();
     let principal_stress: Vec<f64> = stress.iter().flat_map(|s| principal(tensor(s))).collect();
     let principal_strain: Vec<f64> = strain.iter().flat_map(|e| logarithmic(principal(tensor(e)))).collect();
@@ -47,6 +48,7 @@ pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: 
     };
     if case.yielding().next().is_some() {
         set.arrays.push(array("plastic_strain", "", 1, plastic));
+        set.arrays.push(array("yielded", "", 1, yielded));
     }
     set.points.truncate(nodes);
     set.arrays.iter_mut().for_each(|array| array.values.truncate(nodes * array.components));
@@ -139,14 +141,17 @@ struct Means {
     stress: Vec<Components>,
     /// Green–Lagrange strain.
     strain: Vec<Components>,
-    /// Equivalent plastic strain, of the quadrature point nearest to the node in each cell.
+    /// Equivalent plastic strain.
     plastic: Vec<f64>,
+    /// Share of the quadrature points that have yielded.
+    yielded: Vec<f64>,
 }
 
 fn nodal_means(model: &Model, state: &State) -> Means {
     let nodes = model.mass.nodes();
     let mut means = [vec![[0.0; 6]; nodes], vec![[0.0; 6]; nodes]];
     let mut plastic = vec![0.0; nodes];
+    let mut yielded = vec![0.0; nodes];
     let mut count = vec![0.0_f64; nodes];
     for (k, part) in model.parts.iter().enumerate() {
         let past = past_of(&model.parts, k, state.materials.past(0.0).memory);
@@ -154,11 +159,13 @@ fn nodal_means(model: &Model, state: &State) -> Means {
         let y = part.of(&state.y);
         let places = part.body.reference_nodes();
         for cell in 0..mesh.cell_count() {
-            for (&node, xi) in mesh.cell(cell).iter().zip(&places) {
+            let points = part.body.points(cell, &places, y, &past);
+            for (&node, point) in mesh.cell(cell).iter().zip(points) {
                 let node = part.first_node + node;
-                let Ok(point) = part.body.point(cell, xi, y, &past) else { continue };
+                let Ok(point) = point else { continue };
                 count[node] += 1.0;
                 plastic[node] += point.plastic_strain;
+                yielded[node] += point.yielded;
                 for (mean, value) in means.iter_mut().zip([point.cauchy, point.strain]) {
                     mean[node].iter_mut().zip(components(&value)).for_each(|(sum, c)| *sum += c);
                 }
@@ -168,9 +175,11 @@ fn nodal_means(model: &Model, state: &State) -> Means {
     for mean in &mut means {
         mean.iter_mut().zip(&count).for_each(|(sum, n)| sum.iter_mut().for_each(|x| *x /= n));
     }
-    plastic.iter_mut().zip(&count).for_each(|(sum, n)| *sum /= n);
+    for mean in [&mut plastic, &mut yielded] {
+        mean.iter_mut().zip(&count).for_each(|(sum, n)| *sum /= n);
+    }
     let [stress, strain] = means;
-    Means { stress, strain, plastic }
+    Means { stress, strain, plastic, yielded }
 }
 
 fn pressures(surfaces: &Surfaces, model: &Model, state: &State) -> Vec<f64> {

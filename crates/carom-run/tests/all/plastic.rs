@@ -178,3 +178,51 @@ fn a_part_of_a_state_remembers() {
     let apart = small.state().y.iter().zip(&large.state().y[2 * first..]);
     assert!(apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-10);
 }
+
+/// Two blocks that yield, stretched apart through a tie of unmatched meshes, or pressed together by
+/// mortar contact with friction: what flow dissipates and the works of contact close the ledger,
+/// and a run that is resumed has the same bits.
+#[test]
+fn yielding_bodies_are_tied_and_touch_by_mortar() {
+    let bodies = |lower: &str, upper: &str| {
+        let head = block("T6", "");
+        let head = head.replace("place = { rotate = 20.0, about = [0.0, 0.0], shift = [0.0, 0.02] }\n", "");
+        let other = "[[body]]\nname = \"cap\"\nmaterial = \"metal\"\nelement = \"T6\"\n\
+             mesh = { shape = \"rectangle\", min = [0.1, 1.0], max = [0.9, 1.5], cells = [2, 2] }\n";
+        let head = head.replace("velocity = [0.3, -1.0]", &format!("velocity = {lower}"));
+        format!("{head}{other}velocity = {upper}\n")
+    };
+    let tie = |method: &str| {
+        format!(
+            "[[tie]]\nname = \"joint\"\nmethod = \"{method}\"\nsecondary = \"cap.bottom\"\nprimary = \"block.top\"\n"
+        )
+    };
+    let contact = "[[contact]]\nname = \"joint\"\nmethod = \"mortar\"\nmu = 0.3\nsecondary = \"cap.bottom\"\n\
+         primary = \"block.top\"\n";
+    let apart = "[\"0.2*Y\", \"0.8*(Y - 0.5)\"]";
+    for (joint, [lower, upper]) in
+        [(tie("mortar"), [apart; 2]), (contact.to_owned(), ["[0.0, 0.0]", "[0.2, -1.0]"])]
+    {
+        let rest = timed("{ kind = \"energy-momentum\" }", 0.005, 0.2) + "[newton]\ntolerance = 1e-12\n";
+        let text = bodies(lower, upper) + &joint + &rest;
+        let case = case(&text, &[""; 0]);
+        let mut whole = Setup::new(&case).start().unwrap_or_else(|p| panic!("{p:?}"));
+        let start = momenta(&whole, &whole.state().v);
+        let energy = whole.state().ledger.total();
+        let mut resumed = None;
+        while !whole.finished() {
+            if resumed.is_none() && whole.state().time > 0.08 {
+                let state = postcard::from_bytes(&postcard::to_stdvec(&whole.state()).unwrap()).unwrap();
+                resumed = Some(Setup::new(&case).threads(2).resume(state).unwrap());
+            }
+            whole.advance(&mut GridReport::default()).unwrap();
+        }
+        assert!(finish(resumed.unwrap()).state() == whole.state(), "{joint}");
+        let ledger = &whole.state().ledger;
+        assert!(ledger.materials > 0.02 * energy, "{joint} {}", ledger.materials / energy);
+        assert!((ledger.dissipation() / energy).abs() < 1e-9, "{joint} {:e}", ledger.dissipation() / energy);
+        for (now, start) in momenta(&whole, &whole.state().v).into_iter().take(2).zip(start) {
+            assert!((now - start).abs() < 1e-10, "{joint} {now} {start}");
+        }
+    }
+}

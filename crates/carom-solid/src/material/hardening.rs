@@ -41,7 +41,7 @@ struct Entry {
     stored: f64,
 }
 
-/// What a law needs of the yield stress at a plastic strain.
+/// Yield stress at a plastic strain, and the energy that hardening has stored there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Strength {
     /// σ_y.

@@ -3,10 +3,10 @@
 //!
 //!   Ψ = Λ/2 (tr ε)² + μ ε : ε,   τ = Λ tr ε I + 2μ ε.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::Mat;
 
 use super::hyperelastic::Material;
-use super::principal_frame::{PrincipalFrame, PrincipalStress};
+use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
 use super::{NotPositive, Thickness};
 
 /// Hencky's law with Lamé's constants.
@@ -30,7 +30,7 @@ impl Hencky {
         self.lambda + 2.0 * self.mu / 3.0
     }
 
-    /// The same law without resistance to changes of volume.
+    /// The law without resistance to changes of volume.
     pub(super) fn without_bulk(&self) -> Self {
         Self { lambda: -2.0 * self.mu / 3.0, mu: self.mu }
     }
@@ -72,28 +72,7 @@ impl<const D: usize> Material<D> for Hencky {
         p.energy
     }
 
-    #[inline(always)]
-    fn stress(&self, p: &Point<D>) -> Mat<D> {
-        p.of.stress()
-    }
-
-    #[inline(always)]
-    fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
-        p.of.tangent(a, b)
-    }
-
-    #[inline(always)]
-    fn change(&self, p: &Point<D>, df: &Mat<D>) -> Mat<D> {
-        p.of.change(df)
-    }
-
-    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
-        p.of.cauchy()
-    }
-
-    fn lateral(&self, p: &Point<D>) -> f64 {
-        p.of.lateral()
-    }
+    by_principal_stress!(D);
 }
 
 impl Thickness for Hencky {

@@ -18,9 +18,11 @@ pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 ///
 /// A law with memory has, for the memory at the start of a step and the length of the step, an
 /// incremental potential ΔW(F) = Ψ + 𝒟 of the stored energy Ψ and the energy 𝒟 that is dissipated
-/// in the step; the stress is ∂ΔW/∂F. It states [`Material::MEMORY`], [`Material::after`],
-/// [`Material::remember`] and [`Material::dissipated`]; others need none of these. One that yields
-/// adds [`Material::YIELDS`], [`Material::unevolved`] and [`Material::released`].
+/// in the step; the stress is ∂ΔW/∂F. What an objective one remembers does not depend on the
+/// rotation in F: discrete gradients evaluate it at the strain. It states [`Material::MEMORY`],
+/// [`Material::after`], [`Material::remember`] and [`Material::dissipated`]; others need none of
+/// these. One that yields adds [`Material::YIELDS`], [`Material::unevolved`] and
+/// [`Material::released`].
 pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize;

@@ -9,8 +9,8 @@
 //! D = K − 2Gβ/3 + 2Gβ δₐᵦ − 2G [3G/(3G + σ_y′) − 3G Δα/q] Nₐ Nᵦ,   N = e/‖e‖
 //! ```
 //!
-//! Of the plastic work σ_y dα the law stores the part (σ_y − σ_y(0)) dα, which hardening takes, and
-//! dissipates σ_y(0) dα. The incremental potential is that of an elastic step, less
+//! From the plastic work σ_y dα the law stores the part (σ_y − σ_y(0)) dα, which hardening takes,
+//! and dissipates σ_y(0) dα. The incremental potential is that of an elastic step, less
 //!
 //! ```text
 //! ψ = Δα f − 3G Δα²/2 − ∫ (σ_y − σ_y(α)) dα,
@@ -21,13 +21,14 @@
 //! A point remembers C_p⁻¹ − I, whose increments have no round-off without flow: its upper triangle
 //! within the dimensions of the body, then its component across (one and two dimensions), then α.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::Mat;
 
 use super::hardening::{Flow, Hardening};
 use super::hencky::Hencky;
 use super::hyperelastic::Material;
+use super::kinematics::exp_m1;
 use super::past::Past;
-use super::principal_frame::{PrincipalFrame, PrincipalStress};
+use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
 use super::{NotPositive, Thickness};
 
 /// Von Mises plasticity with isotropic hardening in logarithmic strains.
@@ -44,7 +45,7 @@ pub struct Point<const D: usize> {
     of: PrincipalStress<D>,
     start: Remembered<D>,
     flow: Flow,
-    /// (1 − β) e: what flow takes from the elastic strain.
+    /// Elastic strain that turns into plastic strain, (1 − β) e.
     flown: [f64; 3],
     /// Energy stored by the elastic strain and by hardening.
     stored: f64,
@@ -59,12 +60,12 @@ impl Thickness for J2 {
     }
 }
 
-/// What a point remembers.
+/// Memory of a point.
 #[derive(Clone, Copy)]
 struct Remembered<const D: usize> {
     /// C_p⁻¹ − I within the dimensions of the body.
     plastic: Mat<D>,
-    /// Its component in the other directions.
+    /// Component of C_p⁻¹ − I in the other directions.
     across: f64,
     alpha: f64,
 }
@@ -167,12 +168,13 @@ impl<const D: usize> Material<D> for J2 {
         Ok(self.respond(frame, start, true))
     }
 
+    #[inline(always)]
     fn remember(&self, p: &Point<D>, memory: &mut [f64]) {
         let mut end = p.start;
         if p.flow.strain > 0.0 {
             let mut shrinks = p.of.frame.squares;
             for (square, flown) in shrinks.iter_mut().zip(p.flown) {
-                *square *= (-2.0 * flown).exp_m1();
+                *square *= exp_m1(-2.0 * flown);
             }
             let inverse_transposed = p.of.frame.inverse_transposed;
             let change = inverse_transposed.transposed() * p.of.frame.tensor(&shrinks) * inverse_transposed;
@@ -183,6 +185,7 @@ impl<const D: usize> Material<D> for J2 {
         end.write(memory);
     }
 
+    #[inline(always)]
     fn dissipated(&self, p: &Point<D>) -> f64 {
         self.hardening.initial() * p.flow.strain
     }
@@ -191,10 +194,12 @@ impl<const D: usize> Material<D> for J2 {
         memory.get(components(D)).copied().unwrap_or(0.0)
     }
 
+    #[inline(always)]
     fn unevolved(&self, p: &Point<D>) -> Option<Point<D>> {
         Some(self.respond(p.of.frame, p.start, false))
     }
 
+    #[inline(always)]
     fn released(&self, p: &Point<D>) -> f64 {
         p.released
     }
@@ -204,26 +209,5 @@ impl<const D: usize> Material<D> for J2 {
         p.stored
     }
 
-    #[inline(always)]
-    fn stress(&self, p: &Point<D>) -> Mat<D> {
-        p.of.stress()
-    }
-
-    #[inline(always)]
-    fn tangent(&self, p: &Point<D>, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
-        p.of.tangent(a, b)
-    }
-
-    #[inline(always)]
-    fn change(&self, p: &Point<D>, df: &Mat<D>) -> Mat<D> {
-        p.of.change(df)
-    }
-
-    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
-        p.of.cauchy()
-    }
-
-    fn lateral(&self, p: &Point<D>) -> f64 {
-        p.of.lateral()
-    }
+    by_principal_stress!(D);
 }

@@ -63,9 +63,30 @@ fn series_of_ln_1p<T: Real>(x: T) -> [T; 2] {
     [T::of(2.0) * s + r, x * s - r]
 }
 
+/// exp(x) − 1. The terms omitted are below |x|¹¹/11!: round-off.
+#[inline(always)]
+pub(crate) fn exp_m1(x: f64) -> f64 {
+    if x.abs() > 0.05 {
+        return x.exp_m1();
+    }
+    let mut series = 1.0;
+    for divisor in [10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0] {
+        series = 1.0 + x * series * (1.0 / divisor);
+    }
+    x * series
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exponential_keeps_its_digits() {
+        for x in [0.0499_f64, -0.0499, 0.0501, -1.3, 1e-5, -1e-17] {
+            assert!((exp_m1(x) / x.exp_m1() - 1.0).abs() < 4e-16, "{x}");
+        }
+        assert_eq!(exp_m1(0.0), 0.0);
+    }
 
     #[test]
     fn excesses_are_the_plain_formulae() {

@@ -1,8 +1,10 @@
 //! The available laws, chosen at run time.
 
-use super::{Hencky, LinearElastic, NeoHookean, Pointwise, SaintVenantKirchhoff};
+use super::{
+    Hencky, Isochoric, LinearElastic, MooneyRivlin, NeoHookean, Pointwise, SaintVenantKirchhoff, Yeoh,
+};
 
-/// A law with Lamé's constants.
+/// An elastic law with its constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum Law {
@@ -10,6 +12,8 @@ pub enum Law {
     SaintVenantKirchhoff { lambda: f64, mu: f64 },
     LinearElastic { lambda: f64, mu: f64 },
     Hencky { lambda: f64, mu: f64 },
+    MooneyRivlin(Isochoric<MooneyRivlin>),
+    Yeoh(Isochoric<Yeoh>),
 }
 
 impl Law {
@@ -20,6 +24,8 @@ impl Law {
             Self::SaintVenantKirchhoff { lambda, mu } => Box::new(SaintVenantKirchhoff { lambda, mu }),
             Self::LinearElastic { lambda, mu } => Box::new(LinearElastic { lambda, mu }),
             Self::Hencky { lambda, mu } => Box::new(Hencky { lambda, mu }),
+            Self::MooneyRivlin(law) => Box::new(law),
+            Self::Yeoh(law) => Box::new(law),
         }
     }
 }

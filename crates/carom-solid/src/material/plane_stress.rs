@@ -42,7 +42,7 @@ pub trait Thickness: Material<3> {
 
 /// F₃₃ − 1 at which P₃₃ = 0: Newton's method on the law's own stress and tangent, its steps halved
 /// where they would leave F₃₃ > 0 or make |P₃₃| larger.
-fn stress_free<L: Thickness + ?Sized>(
+pub(super) fn stress_free<L: Thickness + ?Sized>(
     law: &L,
     h: &Mat<2>,
     first: f64,

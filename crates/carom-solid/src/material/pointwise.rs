@@ -40,11 +40,14 @@ pub(crate) struct Evolution<'a, const D: usize> {
 
 /// Results of a step of points of a law with memory.
 pub(crate) struct Evolved<'a, const D: usize> {
-    /// Ψ.
+    /// Ψ; not of an increment.
     pub(crate) stored: Lanes,
+    /// [`Material::dissipated`]; not of an increment.
+    pub(crate) dissipated: Lanes,
     /// P, its discrete gradient, or the increment of either.
     pub(crate) stress: Mats<D>,
-    pub(crate) moduli: ModuliMats<D>,
+    /// ∂P/∂F, if it is asked for.
+    pub(crate) moduli: Option<&'a mut ModuliMats<D>>,
     /// Memory at the end of the step; not asked for if empty.
     pub(crate) memory: &'a mut [f64],
 }
@@ -86,9 +89,6 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
 
     /// [`Material::plastic_strain`].
     fn plastic_strain_of(&self, memory: &[f64]) -> f64;
-
-    /// [`Material::dissipated`] of a step to H.
-    fn dissipated_at(&self, h: &Mat<D>, past: &Past) -> f64;
 
     /// A step of a law with memory.
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive>;
@@ -160,9 +160,9 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     fn between(&self, h: [&Mats<D>; 2], count: usize, stress: &mut Mats<D>) -> Result<Lanes, NotPositive> {
         let mut energies = [0.0; LANES];
         for l in 0..count {
-            let (energy, of_point) = between(self, h.map(|h| get(h, l)).each_ref())?;
-            energies[l] = energy;
-            set(stress, l, &of_point);
+            let found = between(self, h.map(|h| get(h, l)).each_ref())?;
+            energies[l] = self.energy(&found.end);
+            set(stress, l, &found.stress);
         }
         Ok(energies)
     }
@@ -189,37 +189,17 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         self.plastic_strain(memory)
     }
 
-    fn dissipated_at(&self, h: &Mat<D>, past: &Past) -> f64 {
-        self.after(h, past).map_or(0.0, |point| self.dissipated(&point))
-    }
-
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {
-        let unit = Mat::<D>::identity().0.map(Vector);
-        for l in 0..step.count {
-            let law = Incremental { law: self, past: step.past.part(l, L::MEMORY) };
-            let h = get(&step.h, l);
-            let point = law.at(&h)?;
-            out.stored[l] = self.energy(&point);
-            if !out.memory.is_empty() {
-                self.remember(&point, &mut out.memory[l * L::MEMORY..(l + 1) * L::MEMORY]);
-            }
-            let before = step.before.as_ref().map(|before| get(before, l));
-            let of_point = match (step.wanted, before) {
-                (Wanted::Increment(dh), None) => law.change(&point, &get(dh, l)),
-                (Wanted::Increment(dh), Some(before)) => change_between(&law, [&before, &h], &get(dh, l))?,
-                (Wanted::Stress | Wanted::Tangent, None) => law.stress(&point),
-                (Wanted::Stress | Wanted::Tangent, Some(before)) => between(&law, [&before, &h])?.1,
-            };
-            set(&mut out.stress, l, &of_point);
-            if let Wanted::Tangent = step.wanted {
-                for (row, a) in out.moduli.iter_mut().zip(&unit) {
-                    for (block, b) in row.iter_mut().zip(&unit) {
-                        set(block, l, &law.tangent(&point, a, b));
-                    }
+        wide(
+            #[inline(always)]
+            || {
+                for l in 0..step.count {
+                    let law = Incremental { law: self, past: step.past.part(l, L::MEMORY) };
+                    evolve_point(&law, step, l, out)?;
                 }
-            }
-        }
-        Ok(())
+                Ok(())
+            },
+        )
     }
 
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive> {
@@ -227,11 +207,13 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         let point = if past.memory.is_empty() { self.at(h)? } else { self.after(h, past)? };
         let across = self.lateral_excess(&point);
         let strain = (*h + h.transposed() + h.transposed() * *h) * 0.5;
+        let plastic_strain = self.plastic_strain(past.memory);
         Ok(PointState {
             det_f: self.volume_ratio(h, past),
             cauchy: in_space(&self.cauchy(&point), self.lateral(&point)),
             strain: in_space(&strain, across + 0.5 * across * across),
-            plastic_strain: self.plastic_strain(past.memory),
+            plastic_strain,
+            yielded: if plastic_strain > 0.0 { 1.0 } else { 0.0 },
         })
     }
 
@@ -251,6 +233,54 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         }
         Ok(sum)
     }
+}
+
+/// A step of one point of a law with memory. Of a discrete gradient everything is a function of the
+/// strains at both ends, what the point remembers included.
+#[inline(always)]
+fn evolve_point<const D: usize, L: Material<D>>(
+    law: &Incremental<L>,
+    step: &Evolution<D>,
+    l: usize,
+    out: &mut Evolved<D>,
+) -> Result<(), NotPositive> {
+    let h = get(&step.h, l);
+    let before = step.before.as_ref().map(|before| get(before, l));
+    let end = match (step.wanted, before) {
+        (Wanted::Increment(dh), Some(before)) => {
+            set(&mut out.stress, l, &change_between(law, [&before, &h], &get(dh, l))?);
+            return Ok(());
+        }
+        (Wanted::Increment(dh), None) => {
+            set(&mut out.stress, l, &law.change(&law.at(&h)?, &get(dh, l)));
+            return Ok(());
+        }
+        (Wanted::Stress | Wanted::Tangent, Some(before)) => {
+            let found = between(law, [&before, &h])?;
+            set(&mut out.stress, l, &found.stress);
+            found.end
+        }
+        (Wanted::Stress | Wanted::Tangent, None) => {
+            let point = law.at(&h)?;
+            set(&mut out.stress, l, &law.stress(&point));
+            point
+        }
+    };
+    out.stored[l] = law.law.energy(&end);
+    out.dissipated[l] = law.law.dissipated(&end);
+    if !out.memory.is_empty() {
+        law.law.remember(&end, &mut out.memory[l * L::MEMORY..(l + 1) * L::MEMORY]);
+    }
+    if let Some(moduli) = &mut out.moduli {
+        let point = if before.is_some() { law.at(&h)? } else { end };
+        let unit = Mat::<D>::identity().0.map(Vector);
+        for (row, a) in moduli.iter_mut().zip(&unit) {
+            for (block, b) in row.iter_mut().zip(&unit) {
+                set(block, l, &law.tangent(&point, a, b));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The components within the dimensions of a body, and the normal one in the others.

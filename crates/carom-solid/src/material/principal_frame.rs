@@ -59,8 +59,12 @@ impl<const D: usize> PrincipalFrame<D> {
         if let Some(least) = excesses.into_iter().find(|x| !(*x > -1.0 && x.is_finite())) {
             return Err(NotPositive(1.0 + least));
         }
-        let squares = excesses.map(|x| 1.0 + x);
-        let strains = excesses.map(|x| 0.5 * ln_1p(x)[0]);
+        let mut squares = [1.0; 3];
+        let mut strains = [0.0; 3];
+        for a in 0..3 {
+            squares[a] += excesses[a];
+            strains[a] = 0.5 * ln_1p(excesses[a])[0];
+        }
         let mut slopes = [[0.0; D]; D];
         for a in 0..D {
             for b in 0..a {
@@ -177,3 +181,43 @@ impl<const D: usize> PrincipalStress<D> {
         if D < 3 { self.kirchhoff[2] / self.frame.det_f } else { 0.0 }
     }
 }
+
+/// The functions of [`Material`](super::Material) that a point of a law in principal stresses, in
+/// its field `of`, knows alone.
+macro_rules! by_principal_stress {
+    ($dimension:ident) => {
+        #[inline(always)]
+        fn stress(&self, p: &Self::Point) -> carom_algebra::Mat<$dimension> {
+            p.of.stress()
+        }
+
+        #[inline(always)]
+        fn tangent(
+            &self,
+            p: &Self::Point,
+            a: &carom_algebra::Vector<$dimension>,
+            b: &carom_algebra::Vector<$dimension>,
+        ) -> carom_algebra::Mat<$dimension> {
+            p.of.tangent(a, b)
+        }
+
+        #[inline(always)]
+        fn change(
+            &self,
+            p: &Self::Point,
+            df: &carom_algebra::Mat<$dimension>,
+        ) -> carom_algebra::Mat<$dimension> {
+            p.of.change(df)
+        }
+
+        fn cauchy(&self, p: &Self::Point) -> carom_algebra::Mat<$dimension> {
+            p.of.cauchy()
+        }
+
+        fn lateral(&self, p: &Self::Point) -> f64 {
+            p.of.lateral()
+        }
+    };
+}
+
+pub(super) use by_principal_stress;

@@ -1,11 +1,12 @@
-//! The volumetric part of the laws, Ψ = Ψ₀ + W(q): Λ enters in W alone, and q measures the change
-//! of volume,
+//! The volumetric part of the laws, Ψ = Ψ₀ + W(q): Λ, or the bulk modulus K, enters in W alone, and
+//! q measures the change of volume,
 //!
 //! ```text
 //! neo-Hookean             q = J − 1    ∂q/∂F = cof F    W = Λ/2 (ln (1 + q))²
 //! St. Venant–Kirchhoff    q = tr E     ∂q/∂F = F        W = Λ/2 q²
 //! linear elastic          q = tr ε     ∂q/∂F = I        W = Λ/2 q²
 //! Hencky, plastic         q = J − 1    ∂q/∂F = cof F    W = K/2 (ln (1 + q))²,   K = Λ + 2μ/3
+//! Mooney–Rivlin, Yeoh     q = J − 1    ∂q/∂F = cof F    W = K/2 (ln (1 + q))²
 //! ```
 //!
 //! Measures are laws themselves, with q as their energy, so that the kernels of forces, tangents
@@ -14,7 +15,7 @@
 use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
-use super::{Hencky, J2, Law, Material, NotPositive, Pointwise};
+use super::{Hencky, Isochoric, J2, Law, Material, NotPositive, Pointwise};
 
 /// What mean dilatation needs of a law.
 pub(crate) struct Mean<const D: usize> {
@@ -26,7 +27,7 @@ pub(crate) struct Mean<const D: usize> {
 }
 
 impl Law {
-    /// Ψ₀, the same law with Λ = 0, and what mean dilatation adds.
+    /// Ψ₀, the law with Λ = 0 or K = 0, and what mean dilatation adds.
     pub(crate) fn averaged<const D: usize>(self) -> (Self, Mean<D>) {
         let (rest, measure, volumetric): (_, Box<dyn Pointwise<D>>, _) = match self {
             Self::NeoHookean { lambda, mu } => {
@@ -47,13 +48,21 @@ impl Law {
                 let rest = Self::Hencky { lambda: law.without_bulk().lambda, mu };
                 (rest, Box::new(Swelling), Volumetric::Logarithmic(law.bulk()))
             }
+            Self::MooneyRivlin(Isochoric { of, bulk }) => {
+                let rest = Self::MooneyRivlin(Isochoric { of, bulk: 0.0 });
+                (rest, Box::new(Swelling), Volumetric::Logarithmic(bulk))
+            }
+            Self::Yeoh(Isochoric { of, bulk }) => {
+                let rest = Self::Yeoh(Isochoric { of, bulk: 0.0 });
+                (rest, Box::new(Swelling), Volumetric::Logarithmic(bulk))
+            }
         };
         (rest, Mean { law: self.pointwise(), measure, volumetric })
     }
 }
 
 impl J2 {
-    /// The same law without resistance to changes of volume, and what mean dilatation adds.
+    /// The law without resistance to changes of volume, and what mean dilatation adds.
     pub(crate) fn averaged<const D: usize>(&self) -> (Self, Mean<D>) {
         let rest = Self { elastic: self.elastic.without_bulk(), hardening: self.hardening.clone() };
         let volumetric = Volumetric::Logarithmic(self.elastic.bulk());

@@ -2,6 +2,7 @@
 
 use carom_algebra::{Mat, Vector, wide};
 
+use super::memory::Energies;
 use super::rotation::{angle, strain};
 use super::{Medium, Place, Solid};
 use crate::body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Response};
@@ -110,7 +111,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     fn respond(&self, first: usize, at: &Configuration, ask: Ask, out: Response) -> Result<(), Inverted> {
-        let Response { numbers, energies, memory } = out;
+        let Response { numbers, energies, memory, dissipated } = out;
         if let (Ask::Force, None) = (ask, at.before)
             && Self::HAS_CONSTANT_STRAIN
             && self.memory == 0
@@ -119,15 +120,16 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         }
         let width = numbers.len() / energies.len().max(1);
         let mut memories = memory.chunks_exact_mut(self.memory.max(1));
+        let mut dissipated = dissipated.iter_mut();
         for (k, (numbers, energy)) in numbers.chunks_exact_mut(width).zip(energies).enumerate() {
             let memory = memories.next().unwrap_or(&mut []);
-            *energy = self.respond_of_cell(first + k, at, ask, numbers, memory)?;
+            let response = self.respond_of_cell(first + k, at, ask, numbers, memory)?;
+            *energy = response.stored;
+            if let Some(dissipated) = dissipated.next() {
+                *dissipated = response.dissipated;
+            }
         }
         Ok(())
-    }
-
-    fn cell_dissipated(&self, cell: usize, at: &Configuration) -> f64 {
-        self.dissipated(cell, at)
     }
 
     fn memory(&self) -> usize {
@@ -201,14 +203,29 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         Ok(())
     }
 
-    fn point(&self, cell: usize, xi: &[f64], y: &[f64], past: &Past) -> Result<PointState, Inverted> {
+    fn points(
+        &self,
+        cell: usize,
+        places: &[Vec<f64>],
+        y: &[f64],
+        past: &Past,
+    ) -> Vec<Result<PointState, Inverted>> {
         let Medium { law, mean, .. } = self.medium(cell);
-        let past = self.nearest(cell, xi, past);
-        let mut state = self.point_of(&**law, cell, xi, y, &past)?;
-        if let Some(mean) = mean {
-            self.add_mean_stress(mean, cell, xi, y, &mut state)?;
-        }
-        Ok(state)
+        let remembers = law.memory() > 0 && !past.memory.is_empty();
+        let projection = remembers.then(|| self.projection(&**law, cell, y, past));
+        let at = |xi: &Vec<f64>| {
+            let mut state = match &projection {
+                Some(projection) => {
+                    self.projected(&**law, cell, xi, y, projection.as_ref().map_err(|e| *e)?)?
+                }
+                None => self.point_of(&**law, cell, xi, y, &Past::default())?,
+            };
+            if let Some(mean) = mean {
+                self.add_mean_stress(mean, cell, xi, y, &mut state)?;
+            }
+            Ok(state)
+        };
+        places.iter().map(at).collect()
     }
 
     fn density(&self, cell: usize) -> f64 {
@@ -217,7 +234,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
-    /// Response of a cell; returns the energy that it stores.
+    /// Response of a cell.
     fn respond_of_cell(
         &self,
         cell: usize,
@@ -225,14 +242,17 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         ask: Ask,
         numbers: &mut [f64],
         memory: &mut [f64],
-    ) -> Result<f64, Inverted> {
+    ) -> Result<Energies, Inverted> {
         let Medium { law, mean, .. } = self.medium(cell);
-        let energy = if self.memory > 0 {
+        let mut energies = if self.memory > 0 {
             self.evolve(&**law, cell, at, ask, numbers, memory)?
         } else {
-            match (ask, at.before) {
+            let stored = match (ask, at.before) {
                 // The mean dilatation is in the same pass over the points.
-                (Ask::Force, None) => return self.force(cell, at.y, numbers),
+                (Ask::Force, None) => {
+                    let stored = self.force(cell, at.y, numbers)?;
+                    return Ok(Energies { stored, dissipated: 0.0 });
+                }
                 (Ask::Force, Some(before)) => self.between_of(&**law, cell, [before, at.y], numbers)?,
                 (Ask::Tangent, _) => {
                     let (force, tangent) = numbers.split_at_mut(N * D);
@@ -242,10 +262,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                     self.product_of(&**law, cell, before, [at.y, change], numbers)?;
                     0.0
                 }
-            }
+            };
+            Energies { stored, dissipated: 0.0 }
         };
-        let Some(mean) = mean else { return Ok(energy) };
-        Ok(energy + self.add_mean(mean, cell, at, ask, numbers)?)
+        if let Some(mean) = mean {
+            energies.stored += self.add_mean(mean, cell, at, ask, numbers)?;
+        }
+        Ok(energies)
     }
 
     /// Force of a cell; returns its energy.

@@ -6,9 +6,16 @@ use carom_algebra::Vector;
 use super::integrals::{scale, spread};
 use super::{Place, Solid};
 use crate::body::{Ask, Configuration, Inverted};
-use crate::material::{Evolution, Evolved, NotPositive, Past, Pointwise, Wanted};
-use crate::points::{Blocks, LANES, get, sum};
+use crate::material::{Evolution, Evolved, ModuliMats, NotPositive, Past, Pointwise, Wanted};
+use crate::points::{Blocks, LANES, sum};
 use crate::shape::Shape;
+
+/// Energy that a cell stores, and energy that it dissipates in a step.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Energies {
+    pub(super) stored: f64,
+    pub(super) dissipated: f64,
+}
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Count of numbers of the cell with the most: those of all its points, of the law that
@@ -21,17 +28,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         of_point * points[0].max(points[1])
     }
 
-    /// Memory of the quadrature point of a cell that is nearest to reference coordinates.
-    pub(super) fn nearest<'a>(&self, cell: usize, xi: &[f64], past: &Past<'a>) -> Past<'a> {
-        let size = self.medium(cell).law.memory();
-        let rule = &self.force_rules[usize::from(self.curved[cell])];
-        let distance = |point: &Vector<D>| (0..D).map(|i| (point[i] - xi[i]).powi(2)).sum::<f64>();
-        let points = rule.points.iter().enumerate();
-        let nearest = points.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
-        past.part(cell, self.memory).part(nearest.map_or(0, |(k, _)| k), size)
-    }
-
-    /// Response of a cell of a law with memory; returns the energy that it stores.
+    /// Response of a cell of a law with memory; the energies of a product are zero.
     pub(super) fn evolve(
         &self,
         law: &dyn Pointwise<D>,
@@ -40,7 +37,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         ask: Ask,
         numbers: &mut [f64],
         memory: &mut [f64],
-    ) -> Result<f64, Inverted> {
+    ) -> Result<Energies, Inverted> {
         let size = law.memory();
         // At the start of a run nothing is remembered.
         let none = if at.past.memory.is_empty() { vec![0.0; self.memory] } else { Vec::new() };
@@ -57,7 +54,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let is_tangent = matches!(ask, Ask::Tangent);
         let mut blocks: Option<Box<Blocks<D, N>>> =
             is_tangent.then(|| Box::new([[[[[0.0; LANES]; D]; D]; N]; N]));
-        let mut energy = 0.0;
+        let mut moduli: Option<Box<ModuliMats<D>>> =
+            is_tangent.then(|| Box::new([[[[[0.0; LANES]; D]; D]; D]; D]));
+        let mut energies = Energies::default();
         let Place { points, inverse, volume } = &self.places[cell];
         for (k, points) in self.points[points.clone()].iter().enumerate() {
             let dh = change.as_ref().map(|change| points.gradient(change, inverse));
@@ -76,18 +75,22 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             };
             let mut out = Evolved {
                 stored: [0.0; LANES],
+                dissipated: [0.0; LANES],
                 stress: [[[0.0; LANES]; D]; D],
-                moduli: [[[[[0.0; LANES]; D]; D]; D]; D],
+                moduli: moduli.as_deref_mut(),
                 memory: memory.get_mut(own).unwrap_or(&mut []),
             };
             law.evolve(&step, &mut out).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
             let weights = points.weights.map(|weight| volume * weight);
-            energy += (0..points.count).map(|l| weights[l] * out.stored[l]).sum::<f64>();
+            energies.stored += (0..points.count).map(|l| weights[l] * out.stored[l]).sum::<f64>();
+            for l in 0..points.count {
+                energies.dissipated += weights[l] * out.dissipated[l];
+            }
             scale(&mut out.stress, &weights);
             points.add_force(&out.stress, inverse, &mut f);
-            if let Some(blocks) = &mut blocks {
-                out.moduli.as_flattened_mut().iter_mut().for_each(|block| scale(block, &weights));
-                points.add_tangent(&out.moduli, inverse, blocks);
+            if let (Some(blocks), Some(moduli)) = (&mut blocks, &mut moduli) {
+                moduli.as_flattened_mut().iter_mut().for_each(|block| scale(block, &weights));
+                points.add_tangent(moduli, inverse, blocks);
             }
         }
         for (force, f) in force.iter_mut().zip(f.as_flattened()) {
@@ -96,30 +99,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         if let Some(blocks) = &blocks {
             spread(blocks, tangent);
         }
-        Ok(if let Ask::Product(_) = ask { 0.0 } else { energy })
-    }
-
-    /// Energy that a cell dissipates in a step from what it remembers of its start.
-    pub(super) fn dissipated(&self, cell: usize, at: &Configuration) -> f64 {
-        let law = &self.medium(cell).law;
-        let size = law.memory();
-        if size == 0 {
-            return 0.0;
-        }
-        let none = if at.past.memory.is_empty() { vec![0.0; self.memory] } else { Vec::new() };
-        let virgin = Past { memory: &none, dt: at.past.dt };
-        let past = if at.past.memory.is_empty() { virgin } else { at.past.part(cell, self.memory) };
-        let u = self.displacements(cell, at.y);
-        let Place { points, inverse, volume } = &self.places[cell];
-        let mut sum = 0.0;
-        for (k, points) in self.points[points.clone()].iter().enumerate() {
-            let h = points.gradient(&u, inverse);
-            for l in 0..points.count {
-                let dissipated = law.dissipated_at(&get(&h, l), &past.part(k * LANES + l, size));
-                sum += volume * points.weights[l] * dissipated;
-            }
-        }
-        sum
+        Ok(energies)
     }
 
     /// Vectors at the nodes of a cell from those at all nodes.

@@ -2,12 +2,16 @@
 //! undeformed state, small displacements, J ≤ 0.
 
 use carom_algebra::{Mat, Vector};
-use carom_solid::material::{Hencky, LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
+use carom_solid::material::{
+    Hencky, Isochoric, LinearElastic, Material, MooneyRivlin, NeoHookean, NotPositive, SaintVenantKirchhoff,
+    Yeoh,
+};
 
 use super::random::lists;
 
 mod plane_stress;
 mod plastic;
+mod rubber;
 
 const LAMBDA: f64 = 2.0;
 const MU: f64 = 1.5;
@@ -22,6 +26,16 @@ fn saint_venant_kirchhoff() -> SaintVenantKirchhoff {
 
 fn hencky() -> Hencky {
     Hencky { lambda: LAMBDA, mu: MU }
+}
+
+const BULK: f64 = LAMBDA + 2.0 * MU / 3.0;
+
+fn mooney_rivlin() -> Isochoric<MooneyRivlin> {
+    Isochoric { of: MooneyRivlin { c10: 0.3 * MU, c01: 0.2 * MU }, bulk: BULK }
+}
+
+fn yeoh() -> Isochoric<Yeoh> {
+    Isochoric { of: Yeoh { c10: 0.5 * MU, c20: -0.1, c30: 0.3 }, bulk: BULK }
 }
 
 fn linear_elastic() -> LinearElastic {
@@ -146,8 +160,14 @@ fn stress_and_tangent_are_derivatives() {
         derivatives::<2, _>(&linear_elastic(), &matrix(x, 0.2));
         derivatives::<3, _>(&linear_elastic(), &matrix(x, 0.2));
         derivatives::<1, _>(&hencky(), &matrix(x, 0.2));
+        derivatives::<1, _>(&mooney_rivlin(), &matrix(x, 0.2));
+        derivatives::<1, _>(&yeoh(), &matrix(x, 0.2));
         derivatives::<2, _>(&hencky(), &matrix(x, 0.2));
+        derivatives::<2, _>(&mooney_rivlin(), &matrix(x, 0.2));
+        derivatives::<2, _>(&yeoh(), &matrix(x, 0.2));
         derivatives::<3, _>(&hencky(), &matrix(x, 0.2));
+        derivatives::<3, _>(&mooney_rivlin(), &matrix(x, 0.2));
+        derivatives::<3, _>(&yeoh(), &matrix(x, 0.2));
     });
 }
 
@@ -160,10 +180,14 @@ fn rotations_turn_the_stress_and_keep_the_energy() {
         objectivity::<2, _>(&neo_hookean(), &matrix(x, 0.2), &q);
         objectivity::<2, _>(&saint_venant_kirchhoff(), &matrix(x, 0.2), &q);
         objectivity::<2, _>(&hencky(), &matrix(x, 0.2), &q);
+        objectivity::<2, _>(&mooney_rivlin(), &matrix(x, 0.2), &q);
+        objectivity::<2, _>(&yeoh(), &matrix(x, 0.2), &q);
         let q = rotation([a, b, 0.7]);
         objectivity::<3, _>(&neo_hookean(), &matrix(x, 0.2), &q);
         objectivity::<3, _>(&saint_venant_kirchhoff(), &matrix(x, 0.2), &q);
         objectivity::<3, _>(&hencky(), &matrix(x, 0.2), &q);
+        objectivity::<3, _>(&mooney_rivlin(), &matrix(x, 0.2), &q);
+        objectivity::<3, _>(&yeoh(), &matrix(x, 0.2), &q);
     });
 }
 
@@ -175,7 +199,11 @@ fn fewer_dimensions_are_the_law_in_three_without_strain_across() {
         padded::<2, _>(&saint_venant_kirchhoff(), &matrix(x, 0.2));
         padded::<2, _>(&linear_elastic(), &matrix(x, 0.2));
         padded::<1, _>(&hencky(), &matrix(x, 0.2));
+        padded::<1, _>(&mooney_rivlin(), &matrix(x, 0.2));
+        padded::<1, _>(&yeoh(), &matrix(x, 0.2));
         padded::<2, _>(&hencky(), &matrix(x, 0.2));
+        padded::<2, _>(&mooney_rivlin(), &matrix(x, 0.2));
+        padded::<2, _>(&yeoh(), &matrix(x, 0.2));
     });
 }
 
@@ -189,10 +217,14 @@ fn small_motions_keep_their_digits() {
         assert!(distance(&stress(&neo_hookean(), &h), &hooke) < 3e-8 * size);
         assert!(distance(&stress(&saint_venant_kirchhoff(), &h), &hooke) < 3e-8 * size);
         assert!(distance(&stress(&hencky(), &h), &hooke) < 3e-8 * size);
+        assert!(distance(&stress(&mooney_rivlin(), &h), &hooke) < 3e-8 * size);
+        assert!(distance(&stress(&yeoh(), &h), &hooke) < 3e-8 * size);
         let size = MU * h.double_dot(&h);
         assert!((energy(&neo_hookean(), &h) - energy_hooke).abs() < 1e-7 * size);
         assert!((energy(&saint_venant_kirchhoff(), &h) - energy_hooke).abs() < 1e-7 * size);
         assert!((energy(&hencky(), &h) - energy_hooke).abs() < 1e-7 * size);
+        assert!((energy(&mooney_rivlin(), &h) - energy_hooke).abs() < 1e-7 * size);
+        assert!((energy(&yeoh(), &h) - energy_hooke).abs() < 1e-7 * size);
     });
 }
 
@@ -210,7 +242,11 @@ fn the_undeformed_state_has_no_stress_and_no_energy() {
     at_rest::<3, _>(&saint_venant_kirchhoff());
     at_rest::<2, _>(&linear_elastic());
     at_rest::<2, _>(&hencky());
+    at_rest::<2, _>(&mooney_rivlin());
+    at_rest::<2, _>(&yeoh());
     at_rest::<3, _>(&hencky());
+    at_rest::<3, _>(&mooney_rivlin());
+    at_rest::<3, _>(&yeoh());
 }
 
 /// cos 1e-9 − 1 = −5e-19 is lost in F, not in H.
@@ -221,6 +257,8 @@ fn a_small_rotation_is_no_strain() {
     assert!(distance(&stress(&neo_hookean(), &h), &Mat::ZERO) < 1e-33);
     assert!(distance(&stress(&saint_venant_kirchhoff(), &h), &Mat::ZERO) < 1e-33);
     assert!(distance(&stress(&hencky(), &h), &Mat::ZERO) < 1e-33);
+    assert!(distance(&stress(&mooney_rivlin(), &h), &Mat::ZERO) < 1e-33);
+    assert!(distance(&stress(&yeoh(), &h), &Mat::ZERO) < 1e-33);
 }
 
 #[test]
@@ -229,6 +267,8 @@ fn inversion_is_an_error_that_says_j() {
     assert_eq!(neo_hookean().at(&h).err(), Some(NotPositive(-0.5)));
     assert_eq!(saint_venant_kirchhoff().at(&h).err(), Some(NotPositive(-0.5)));
     assert_eq!(hencky().at(&h).err(), Some(NotPositive(-0.5)));
+    assert_eq!(mooney_rivlin().at(&h).err(), Some(NotPositive(-0.5)));
+    assert_eq!(yeoh().at(&h).err(), Some(NotPositive(-0.5)));
     assert!(neo_hookean().at(&Mat([[f64::NAN, 0.0], [0.0, 0.0]])).is_err());
     assert!(Material::<1>::at(&neo_hookean(), &Mat([[-1.0]])).is_err());
 }

@@ -38,7 +38,7 @@ fn cell_forces(
     forces: &mut [f64],
     energies: &mut [f64],
 ) -> Result<(), Inverted> {
-    let out = Response { numbers: forces, energies, memory: &mut [] };
+    let out = Response { numbers: forces, energies, memory: &mut [], dissipated: &mut [] };
     body.respond(first, &Configuration::at(y), Ask::Force, out)
 }
 

@@ -292,6 +292,7 @@ fn sensitivity(name: &str) -> Sensitivity {
             | "energy_lost_impact"
             | "dissipated_integrator"
             | "plastic_lost"
+            | "permanent_set"
             | "dissipated_contact",
         )
         | (_, "peak_mean")

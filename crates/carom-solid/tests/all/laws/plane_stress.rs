@@ -35,6 +35,8 @@ fn stress_and_condensed_tangent_are_derivatives() {
         derivatives::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(x, 0.2));
         derivatives::<2, _>(&PlaneStress(linear_elastic()), &matrix(x, 0.2));
         derivatives::<2, _>(&PlaneStress(hencky()), &matrix(x, 0.2));
+        derivatives::<2, _>(&PlaneStress(mooney_rivlin()), &matrix(x, 0.2));
+        derivatives::<2, _>(&PlaneStress(yeoh()), &matrix(x, 0.2));
     });
 }
 
@@ -46,6 +48,8 @@ fn rotations_turn_the_stress() {
         objectivity::<2, _>(&PlaneStress(neo_hookean()), &matrix(x, 0.2), &q);
         objectivity::<2, _>(&PlaneStress(saint_venant_kirchhoff()), &matrix(x, 0.2), &q);
         objectivity::<2, _>(&PlaneStress(hencky()), &matrix(x, 0.2), &q);
+        objectivity::<2, _>(&PlaneStress(mooney_rivlin()), &matrix(x, 0.2), &q);
+        objectivity::<2, _>(&PlaneStress(yeoh()), &matrix(x, 0.2), &q);
     });
 }
 
@@ -56,6 +60,8 @@ fn nothing_presses_across() {
         free_across(&saint_venant_kirchhoff(), &matrix(x, 0.3));
         free_across(&linear_elastic(), &matrix(x, 0.3));
         free_across(&hencky(), &matrix(x, 0.3));
+        free_across(&mooney_rivlin(), &matrix(x, 0.3));
+        free_across(&yeoh(), &matrix(x, 0.3));
     });
 }
 

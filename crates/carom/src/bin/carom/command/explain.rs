@@ -21,10 +21,11 @@ Examples:
   carom explain moreau-jean theta=0.5
   carom explain newton.tolerance
   carom explain contact.enforcement
+  carom explain hencky
   carom explain rho_inf")]
 pub(crate) struct Arguments {
-    /// Kind of scheme, as in a case file, or a key with or without its table; without it, all kinds
-    /// of schemes are listed
+    /// Kind of scheme, as in a case file, a key with or without its table, or a word that is a
+    /// value of keys; without it, all kinds of schemes are listed
     #[arg(value_name = "SCHEME or KEY")]
     what: Option<String>,
     /// Parameters of the scheme

@@ -1,0 +1,165 @@
+//! Material laws that are Python objects.
+
+use std::sync::{Arc, PoisonError};
+
+use carom::algebra::{Mat, Vector};
+use carom::solid::Past;
+use carom::solid::material::{Material, NotPositive, Thickness, excess_det};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::function::Failure;
+
+/// Largest count of numbers that a point remembers.
+const MOST: usize = 16;
+
+/// A Python object with the method `response(F, memory)`, which returns what a point of the
+/// material stores, dissipates in the step, P, ∂P/∂F, and its new memory.
+#[derive(Clone)]
+pub(crate) struct Law {
+    name: String,
+    object: Arc<Py<PyAny>>,
+    /// Count of numbers that a point remembers.
+    memory: usize,
+    failure: Failure,
+}
+
+/// Answer of the object at a point.
+pub(crate) struct Point {
+    f: [[f64; 3]; 3],
+    det_f: f64,
+    stored: f64,
+    dissipated: f64,
+    stress: Vec<f64>,
+    moduli: Vec<f64>,
+    memory: Vec<f64>,
+}
+
+impl Law {
+    /// The law of a material from its object, whose attribute `memory` is the count of numbers.
+    pub(crate) fn new(name: String, object: &Bound<'_, PyAny>, failure: Failure) -> PyResult<Self> {
+        let memory: usize = object.getattr("memory")?.extract()?;
+        if memory > MOST {
+            let what = format!("the law of `{name}` remembers {memory} numbers; the most is {MOST}");
+            return Err(PyValueError::new_err(what));
+        }
+        object.getattr("response")?;
+        Ok(Self { name, object: Arc::new(object.clone().unbind()), memory, failure })
+    }
+
+    fn called(&self, py: Python<'_>, f: [[f64; 3]; 3], memory: &[f64]) -> PyResult<Point> {
+        let numpy = py.import("numpy")?;
+        let numbers = |values: &Bound<'_, PyAny>, count: usize, what: &str| -> PyResult<Vec<f64>> {
+            let flat = numpy.call_method1("ravel", (values,))?.call_method1("astype", ("float64",))?;
+            let flat: PyReadonlyArray1<'_, f64> = flat.extract()?;
+            let found = flat.as_array().to_vec();
+            if found.len() == count { Ok(found) } else { Err(self.wrong(what, found.len(), count)) }
+        };
+        let gradient = PyArray1::from_slice(py, f.as_flattened()).reshape([3, 3])?;
+        let arguments = (gradient, PyArray1::from_slice(py, memory));
+        let answer = self.object.bind(py).call_method1("response", arguments)?;
+        let answer: Bound<'_, PyTuple> = answer.extract().map_err(|_| self.wrong("a tuple", 0, 5))?;
+        if answer.len() != 5 {
+            return Err(self.wrong("(stored, dissipated, P, dP/dF, memory)", answer.len(), 5));
+        }
+        Ok(Point {
+            f,
+            det_f: 0.0,
+            stored: answer.get_item(0)?.extract()?,
+            dissipated: answer.get_item(1)?.extract()?,
+            stress: numbers(&answer.get_item(2)?, 9, "P of shape (3, 3)")?,
+            moduli: numbers(&answer.get_item(3)?, 81, "dP/dF of shape (3, 3, 3, 3)")?,
+            memory: numbers(&answer.get_item(4)?, self.memory, "the new memory")?,
+        })
+    }
+
+    fn wrong(&self, what: &str, found: usize, count: usize) -> PyErr {
+        let name = &self.name;
+        PyValueError::new_err(format!(
+            "`response` of the law of `{name}` must return {what}: {count} numbers or parts, not {found}"
+        ))
+    }
+}
+
+impl Point {
+    fn stress<const D: usize>(&self) -> Mat<D> {
+        Mat(std::array::from_fn(|i| std::array::from_fn(|j| self.stress[3 * i + j])))
+    }
+}
+
+impl<const D: usize> Material<D> for Law {
+    const ENERGY_DEGREE: usize = 0;
+    const MEMORY: usize = MOST;
+    type Point = Point;
+
+    fn at(&self, h: &Mat<D>) -> Result<Point, NotPositive> {
+        self.after(h, &Past { memory: &[0.0; MOST], dt: 0.0 })
+    }
+
+    fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point, NotPositive> {
+        let det_f = 1.0 + excess_det(h);
+        if det_f.is_nan() || det_f <= 0.0 {
+            return Err(NotPositive(det_f));
+        }
+        let failure = || self.failure.lock().unwrap_or_else(PoisonError::into_inner);
+        if failure().is_some() {
+            return Err(NotPositive(f64::NAN));
+        }
+        let mut f = Mat::<3>::identity().0;
+        for i in 0..D {
+            for j in 0..D {
+                f[i][j] += h.0[i][j];
+            }
+        }
+        match Python::attach(|py| self.called(py, f, &past.memory[..self.memory])) {
+            Ok(point) => Ok(Point { det_f, ..point }),
+            Err(error) => {
+                *failure() = Some(error);
+                Err(NotPositive(f64::NAN))
+            }
+        }
+    }
+
+    fn remember(&self, p: &Point, memory: &mut [f64]) {
+        memory[..self.memory].copy_from_slice(&p.memory);
+    }
+
+    fn dissipated(&self, p: &Point) -> f64 {
+        p.dissipated
+    }
+
+    fn energy(&self, p: &Point) -> f64 {
+        p.stored
+    }
+
+    fn stress(&self, p: &Point) -> Mat<D> {
+        p.stress()
+    }
+
+    fn tangent(&self, p: &Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
+        let mut block = Mat::ZERO;
+        for i in 0..D {
+            for k in 0..D {
+                for j in 0..D {
+                    for l in 0..D {
+                        block.0[i][k] += p.moduli[((3 * i + j) * 3 + k) * 3 + l] * a[j] * b[l];
+                    }
+                }
+            }
+        }
+        block
+    }
+
+    fn cauchy(&self, p: &Point) -> Mat<D> {
+        let f = Mat::<D>(std::array::from_fn(|i| std::array::from_fn(|j| p.f[i][j])));
+        p.stress::<D>() * f.transposed() * (1.0 / p.det_f)
+    }
+
+    fn lateral(&self, p: &Point) -> f64 {
+        if D < 3 { p.stress[8] * p.f[2][2] / p.det_f } else { 0.0 }
+    }
+}
+
+impl Thickness for Law {}
