@@ -8,7 +8,7 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use carom_algebra::{Condensed, Cone, Elimination, Kind, Pattern, Precision, Saddle, Threads};
+use carom_algebra::{Condensed, Cone, Couplings, Elimination, Kind, Pattern, Precision, Saddle, Threads};
 use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.

@@ -254,8 +254,7 @@ impl Mesh {
         skin
     }
 
-    /// Numbers of the facets of all cells, cell · (facets of a cell) + facet, by the lowest of their
-    /// nodes.
+    /// Numbers of all facets, cell · (facets of a cell) + facet, by the lowest of their nodes.
     fn facets_by_lowest_node(&self) -> impl Iterator<Item = Vec<usize>> {
         let facets = self.element.facets();
         // Nodes that the mesh lacks, which a body rejects, count as its last one.

@@ -204,7 +204,7 @@ mod tests {
         }
     }
 
-    /// Contacts of which each is coupled with a few others, without and with the zeros between them.
+    /// Contacts that are coupled with a few others each, without and with the zeros between them.
     #[test]
     fn zeros_that_are_left_out_change_no_bit() {
         for case in 0..100 {
