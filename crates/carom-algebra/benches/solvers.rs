@@ -8,7 +8,7 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use carom_algebra::{Condensed, Cone, Elimination, Kind, Pattern, Precision, Saddle, Threads};
+use carom_algebra::{Condensed, Cone, Couplings, Elimination, Kind, Pattern, Precision, Saddle, Threads};
 use divan::Bencher;
 
 /// Nodes along an edge: 2 178 and 18 818 unknowns.
@@ -124,11 +124,14 @@ fn complementarity_problem(bencher: Bencher, contacts: usize) {
     let n = contacts;
     let d: Vec<f64> = (0..n * n).map(|k| if k / n == k % n { 2.0 } else { 0.5 / n as f64 }).collect();
     let b: Vec<f64> = (0..n).map(|k| (1.3 * k as f64).sin()).collect();
+    let d = Couplings::dense(n, d);
     let kinds = vec![Kind::Normal; n];
     let mut z = Vec::new();
     bencher.bench_local(|| {
-        let matrix = black_box(&d).clone();
-        let right = b.clone();
-        Cone { matrix, right, kinds: &kinds, is_dependent: false }.solve(&mut z).is_ok()
+        let mut matrix = black_box(&d).clone();
+        let mut right = b.clone();
+        Cone { matrix: &mut matrix, right: &mut right, kinds: &kinds, is_dependent: false }
+            .solve(&mut z)
+            .is_ok()
     });
 }

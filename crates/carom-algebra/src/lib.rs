@@ -24,7 +24,7 @@ mod symbolic;
 mod threads;
 
 pub use condensed::Condensed;
-pub use cone::{Cone, Kind};
+pub use cone::{Cone, Couplings, Kind};
 pub use difference::jacobian_error;
 pub use elimination::Elimination;
 pub use linear::LinearError;

@@ -11,17 +11,36 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Sum of a term of the i-th components, Σ term(aᵢ, bᵢ, …), over vectors of the same length.
 #[inline(always)]
 pub fn sum<const K: usize>(of: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f64 {
+    sums(of, |at| [term(at)])[0]
+}
+
+/// Sums of several terms in one pass over the vectors, each with the bits of [`sum`].
+#[inline(always)]
+pub fn sums<const K: usize, const T: usize>(
+    of: [&[f64]; K],
+    terms: impl Fn([f64; K]) -> [f64; T],
+) -> [f64; T] {
     let whole = of.map(|x| x.as_chunks::<LANES>().0);
     let tails = of.map(|x| x.as_chunks::<LANES>().1);
-    let mut sums = [0.0; LANES];
+    let mut sums = [[0.0; LANES]; T];
     for i in 0..whole[0].len() {
         let at = whole.map(|x| &x[i]);
         for l in 0..LANES {
-            sums[l] += term(at.map(|x| x[l]));
+            let terms = terms(at.map(|x| x[l]));
+            for t in 0..T {
+                sums[t][l] += terms[t];
+            }
         }
     }
-    let tail: f64 = (0..tails[0].len()).map(|i| term(tails.map(|x| x[i]))).sum();
-    sums.iter().sum::<f64>() + tail
+    // The sum of no numbers is −0.
+    let mut tail = [-0.0; T];
+    for i in 0..tails[0].len() {
+        let terms = terms(tails.map(|x| x[i]));
+        for t in 0..T {
+            tail[t] += terms[t];
+        }
+    }
+    std::array::from_fn(|t| sums[t].iter().sum::<f64>() + tail[t])
 }
 
 /// Largest absolute value of a vector; infinite if a component is not finite.

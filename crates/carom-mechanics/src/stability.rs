@@ -11,8 +11,9 @@
 
 use carom_algebra::NodeMatrix;
 use carom_algebra::sums::dot;
-use carom_solid::{Configuration, cell_lumped_mass};
+use carom_solid::{Ask, Configuration, Response, cell_lumped_mass};
 
+use crate::cells;
 use crate::linear::tangents::{coupled, each_tangent};
 use crate::model::Model;
 
@@ -31,14 +32,24 @@ pub struct StableStep {
     pub cell: f64,
 }
 
+/// The bound by single cells, [`StableStep::cell`], which needs no matrix.
+pub fn cell_step(model: &Model) -> Option<f64> {
+    Some(2.0 / bound(model, &lumped(model))?.sqrt())
+}
+
+/// Bound on ω_max²; `None` if a cell is inverted or a free node is massless.
+fn bound(model: &Model, mass: &[f64]) -> Option<f64> {
+    if (0..model.dofs()).any(|dof| !model.fixed[dof] && mass[dof] <= 0.0) {
+        return None;
+    }
+    Some(largest_of_cells(model)?.max(f64::MIN_POSITIVE))
+}
+
 /// Stable step of a model with lumped masses for its initial tangent; `None` if a cell is inverted
 /// or a free node is massless. Ties are left out: they lower the highest frequency.
 pub fn stable_step(model: &Model) -> Option<StableStep> {
     let mass = lumped(model);
-    if (0..model.dofs()).any(|dof| !model.fixed[dof] && mass[dof] <= 0.0) {
-        return None;
-    }
-    let cell = largest_of_cells(model)?.max(f64::MIN_POSITIVE);
+    let cell = bound(model, &mass)?;
     let mut matrix = scaled_tangent(model, &mass, cell)?;
     let mut x = vec![0.0; model.dofs()];
     for (i, dof) in (0..model.dofs()).filter(|dof| !model.fixed[*dof]).enumerate() {
@@ -104,17 +115,27 @@ fn largest_of_cells(model: &Model) -> Option<f64> {
         let n = mesh.element.nodes();
         let d = model.dimension;
         let dofs = mesh.element.dofs();
-        let mut work = vec![0.0; n * n];
-        let mut mass = vec![0.0; n];
-        let mut force = vec![0.0; dofs];
-        let mut tangent = vec![0.0; dofs * dofs];
-        for cell in 0..mesh.cell_count() {
-            cell_lumped_mass(&*part.body, cell, &mut work, &mut mass);
-            part.body.cell_tangent(cell, part.of(&model.reference), &mut force, &mut tangent).ok()?;
-            let scaled =
-                tangent.iter().enumerate().map(|(k, t)| t * t / (mass[k / dofs / d] * mass[k % dofs / d]));
-            largest = largest.max(scaled.sum::<f64>().sqrt());
-        }
+        let y = part.of(&model.reference);
+        let compute = |first: usize, squares: &mut [f64], _: &mut [f64]| {
+            let mut work = vec![0.0; n * n];
+            let mut mass = vec![0.0; n];
+            let mut numbers = vec![0.0; dofs + dofs * dofs];
+            for (k, square) in squares.iter_mut().enumerate() {
+                cell_lumped_mass(&*part.body, first + k, &mut work, &mut mass);
+                let out = Response { numbers: &mut numbers, energies: &mut [0.0], memory: &mut [] };
+                part.body.respond(first + k, &Configuration::at(y), Ask::Tangent, out)?;
+                let tangent = numbers[dofs..].chunks_exact(dofs).enumerate();
+                let scaled = tangent.flat_map(|(i, row)| {
+                    let of_row = mass[i / d];
+                    let masses = mass.iter().flat_map(move |m| std::iter::repeat_n(of_row * m, d));
+                    row.iter().zip(masses).map(|(t, masses)| t * t / masses)
+                });
+                *square = scaled.sum::<f64>().sqrt();
+            }
+            Ok(())
+        };
+        let add = |_: usize, squares: &[f64]| largest = squares.iter().fold(largest, |most, x| most.max(*x));
+        cells::for_each(&model.threads, mesh.cell_count(), 1, compute, add).ok()?;
     }
     Some(largest)
 }

@@ -363,6 +363,42 @@ impl State {
         std::array::from_fn(|i| self.impulses.iter().map(|impulse| impulse[i]).sum())
     }
 
+    /// Becomes a copy of another state, in reused memory, whose positions, velocities,
+    /// accelerations, internal forces and half-step velocities are not copied: a step overwrites
+    /// them. Contact forces are zero.
+    pub(crate) fn follow(&mut self, start: &Self) {
+        let Self { step, time, y, f_external, f_friction, contact_forces, impulses, .. } = start;
+        let Self { carried, pairs, ledger, previous, half_step, frozen, .. } = start;
+        let Self { bisection, overlaps, materials, .. } = start;
+        self.step = *step;
+        self.time = *time;
+        for vector in [
+            &mut self.y,
+            &mut self.v,
+            &mut self.a,
+            &mut self.f_internal,
+            &mut self.f_contact,
+            &mut self.half_step.velocity,
+        ] {
+            vector.resize(y.len(), 0.0);
+        }
+        self.f_contact.fill(0.0);
+        self.f_external.clone_from(f_external);
+        self.f_friction.clone_from(f_friction);
+        self.contact_forces.clone_from(contact_forces);
+        self.impulses.clone_from(impulses);
+        self.carried.clone_from(carried);
+        self.pairs.clone_from(pairs);
+        self.ledger.clone_from(ledger);
+        self.previous.clone_from(previous);
+        self.half_step.dt = half_step.dt;
+        self.half_step.longest = half_step.longest;
+        self.frozen.clone_from(frozen);
+        self.bisection = *bisection;
+        self.overlaps.clone_from(overlaps);
+        self.materials.clone_from(materials);
+    }
+
     /// Takes over the pairs at the end of a solve.
     pub(crate) fn take_pairs(&mut self, pairings: &[Pairing]) {
         self.pairs.iter_mut().zip(pairings).for_each(|(pairs, pairing)| pairs.clone_from(&pairing.pairs));

@@ -62,6 +62,13 @@ impl Workspace {
         copy
     }
 
+    /// A state that follows another one, in reused memory.
+    pub(crate) fn following(&mut self, state: &State) -> State {
+        let mut next = self.states.pop().unwrap_or_default();
+        next.follow(state);
+        next
+    }
+
     /// Returns the memory of a state.
     pub(crate) fn put(&mut self, state: State) {
         self.states.push(state);

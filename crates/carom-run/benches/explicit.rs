@@ -8,7 +8,8 @@
 //! arithmetic  the forces of the law alone (`explicit/bare.rs`), for cells that stay in the cache
 //! ```
 //!
-//!     cargo bench -p carom-run --bench explicit        on an idle machine
+//!     cargo bench -p carom-run --bench explicit                on an idle machine
+//!     cargo bench -p carom-run --bench explicit -- floors      the bounds of Tet4 cells alone
 
 #![allow(clippy::print_stdout)]
 
@@ -93,7 +94,7 @@ fn measure(name: &str, sets: &[&str], bare: f64, bandwidth: f64) -> bool {
         }
     }
     let [one, two] = best.map(|seconds| 1e9 * seconds / cells);
-    let bytes = PER_NODE * nodes / cells + 4.0 * mesh.element.nodes() as f64 + 8.0 * 10.0;
+    let bytes = bytes(nodes / cells, mesh.element.nodes());
     let memory = 1e9 * bytes / bandwidth;
     let floor = memory.max(bare);
     let (times, speed_up) = (one / floor, one / two);
@@ -108,9 +109,24 @@ fn measure(name: &str, sets: &[&str], bare: f64, bandwidth: f64) -> bool {
     met
 }
 
+/// Bytes per cell that any code moves in a step.
+fn bytes(nodes_per_cell: f64, nodes_of_cell: usize) -> f64 {
+    PER_NODE * nodes_per_cell + 4.0 * nodes_of_cell as f64 + 8.0 * 10.0
+}
+
+/// The lower bounds of a large block of Tet4 cells, which has a node for six of them.
+fn floors(bandwidth: f64) {
+    let memory = 1e9 * bytes(1.0 / 6.0, 4) / bandwidth;
+    println!("  memory  {memory:6.1} ns per cell; arithmetic {:.1} ns", bare::tetrahedra());
+}
+
 fn main() {
     let bandwidth = bandwidth();
     println!("triad: {:.1} GB/s with one thread", 1e-9 * bandwidth);
+    if std::env::args().any(|word| word == "floors") {
+        floors(bandwidth);
+        return;
+    }
     let [tetrahedron, hexahedron] = [bare::tetrahedra(), bare::hexahedra()];
     let tetrahedra = measure("Tet4", &[], tetrahedron, bandwidth);
     let sets =

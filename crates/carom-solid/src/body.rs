@@ -1,5 +1,7 @@
 //! The interface of a body: forces, tangents, masses and stresses at given positions, cell by cell.
 
+use std::ops::Range;
+
 use crate::bounds::Bounds;
 use crate::material::Past;
 use crate::mesh::Mesh;
@@ -150,8 +152,8 @@ pub trait Body: Geometry {
     /// The determinant J if it is not positive.
     fn stress_divergence(&self, cell: usize, h: &[f64], second: &[f64], out: &mut [f64]) -> Result<(), f64>;
 
-    /// Smallest J over the quadrature points of a cell, which remember `past`.
-    fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64;
+    /// Smallest J over the quadrature points of consecutive cells, which remember `past`.
+    fn min_det_f(&self, cells: Range<usize>, y: &[f64], past: &Past) -> f64;
 
     /// Largest equivalent plastic strain over the quadrature points of a cell, which remember
     /// `past`.

@@ -223,17 +223,60 @@ impl Mesh {
     /// The whole boundary: the facets of only one cell, by ascending nodes, each traversed with the
     /// body on its left, or counter-clockwise seen from outside.
     pub fn skin(&self) -> Vec<Facet> {
-        // Nodes of a facet in ascending order, as a key common to both its cells.
-        let mut alone: BTreeMap<Vec<usize>, Option<Facet>> = BTreeMap::new();
-        for cell in 0..self.cell_count() {
-            for facet in self.element.facets() {
-                let nodes: Vec<usize> = facet.iter().map(|&a| self.cell(cell)[a]).collect();
-                let mut key = nodes.clone();
-                key.sort_unstable();
-                alone.entry(key).and_modify(|other| *other = None).or_insert(Some(Facet { cell, nodes }));
+        let facets = self.element.facets();
+        let nodes = |number: usize| {
+            let cell = self.cell(number / facets.len());
+            facets[number % facets.len()].iter().map(|&a| cell[a])
+        };
+        let mut skin = Vec::new();
+        let mut keys = Vec::new();
+        let mut places = Vec::new();
+        for bucket in self.facets_by_lowest_node() {
+            // Nodes of each facet in ascending order, as a key common to both its cells.
+            keys.clear();
+            for &number in &bucket {
+                let first = keys.len();
+                keys.extend(nodes(number));
+                keys[first..].sort_unstable();
+            }
+            let size = keys.len() / bucket.len().max(1);
+            let key = |place: usize| &keys[place * size..(place + 1) * size];
+            places.clear();
+            places.extend(0..bucket.len());
+            places.sort_unstable_by(|&a, &b| key(a).cmp(key(b)));
+            for same in places.chunk_by(|&a, &b| key(a) == key(b)) {
+                if let [place] = same {
+                    let number = bucket[*place];
+                    skin.push(Facet { cell: number / facets.len(), nodes: nodes(number).collect() });
+                }
             }
         }
-        alone.into_values().flatten().collect()
+        skin
+    }
+
+    /// Numbers of all facets, cell · (facets of a cell) + facet, by the lowest of their nodes.
+    fn facets_by_lowest_node(&self) -> impl Iterator<Item = Vec<usize>> {
+        let facets = self.element.facets();
+        // Nodes that the mesh lacks, which a body rejects, count as its last one.
+        let last = self.nodes.len().saturating_sub(1);
+        let lowest = move |cell: usize| {
+            let nodes = self.cell(cell);
+            facets.iter().map(move |facet| facet.iter().fold(last, |low, &a| low.min(nodes[a])))
+        };
+        let mut ends = vec![0; last + 1];
+        (0..self.cell_count()).flat_map(lowest).for_each(|node| ends[node] += 1);
+        let mut end = 0;
+        for count in &mut ends {
+            end += *count;
+            *count = end;
+        }
+        let mut order = vec![0; end];
+        let mut places = ends.clone();
+        for (number, node) in (0..self.cell_count()).flat_map(lowest).enumerate() {
+            places[node] -= 1;
+            order[places[node]] = number;
+        }
+        places.into_iter().zip(ends).map(move |(start, end)| order[start..end].to_vec())
     }
 
     /// The whole boundary; in the plane in the order of traversal, loop by loop.
@@ -292,8 +335,13 @@ impl Mesh {
 
     /// Whether each node lies on the boundary.
     pub fn on_boundary(&self) -> Vec<bool> {
+        self.nodes_of(&self.skin())
+    }
+
+    /// Whether each node belongs to one of these facets.
+    pub fn nodes_of(&self, facets: &[Facet]) -> Vec<bool> {
         let mut on = vec![false; self.nodes.len()];
-        self.skin().iter().flat_map(|facet| &facet.nodes).for_each(|&node| on[node] = true);
+        facets.iter().flat_map(|facet| &facet.nodes).for_each(|&node| on[node] = true);
         on
     }
 

@@ -40,15 +40,24 @@ pub(crate) fn map<const D: usize, const N: usize, S: Shape<D, N>>(
 ) -> Result<([Vector<D>; N], f64), Degenerate<D>> {
     let local = S::gradients(xi);
     let derivative = gradient(x, &local);
+    match jacobian(&derivative) {
+        Ok(jacobian) => {
+            let inverse_transposed = derivative.inverse().transposed();
+            Ok((local.map(|g| inverse_transposed.apply(&g)), jacobian))
+        }
+        Err(jacobian) => Err(Degenerate { place: interpolate(&S::values(xi), x).0, jacobian }),
+    }
+}
+
+/// Jacobian det(∂X/∂ξ) > 0 of the derivative ∂X/∂ξ at a point.
+///
+/// # Errors
+/// The determinant, if the cell is degenerate or inverted there.
+pub(crate) fn jacobian<const D: usize>(derivative: &Mat<D>) -> Result<f64, f64> {
     let jacobian = derivative.det();
     // Relative to the lengths of the columns, so that slivers are rejected at any scale.
     let size: f64 = derivative.transposed().0.map(|column| Vector(column).norm()).iter().product();
-    if jacobian > 1e-12 * size {
-        let inverse_transposed = derivative.inverse().transposed();
-        Ok((local.map(|g| inverse_transposed.apply(&g)), jacobian))
-    } else {
-        Err(Degenerate { place: interpolate(&S::values(xi), x).0, jacobian })
-    }
+    if jacobian > 1e-12 * size { Ok(jacobian) } else { Err(jacobian) }
 }
 
 /// A point this far outside a cell, in reference coordinates, still belongs to it: input has about
@@ -60,9 +69,13 @@ const TOLERANCE: f64 = 1e-6;
 /// at most (1 + 2dε)ᵏ in d ≤ 3 dimensions: the point is outside by at most dkε.
 pub(crate) const MARGIN: f64 = 20.0 * TOLERANCE;
 
-/// Whether the reference map is not affine.
-pub(crate) fn is_curved<const D: usize, const N: usize, S: Shape<D, N>>(x: &[Vector<D>; N]) -> bool {
-    let corners = gradient(x, &S::gradients(&S::Domain::CENTRE));
+/// Whether the reference map is not affine; `centre`: gradients of the shape functions in the
+/// centre.
+pub(crate) fn is_curved<const D: usize, const N: usize, S: Shape<D, N>>(
+    x: &[Vector<D>; N],
+    centre: &[Vector<D>; N],
+) -> bool {
+    let corners = gradient(x, centre);
     let affine = |a: usize| x[0] + corners.apply(&(S::NODES[a] - S::NODES[0]));
     let size = (x[1] - x[0]).norm();
     (0..N).any(|a| (x[a] - affine(a)).norm() > 1e-10 * size)

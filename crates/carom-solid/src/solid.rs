@@ -67,6 +67,20 @@ struct Place<const D: usize> {
     volume: f64,
 }
 
+/// Shape functions and their gradients by ξ at a point of the reference cell.
+struct ShapePoint<const D: usize, const N: usize> {
+    values: [f64; N],
+    gradients: [Vector<D>; N],
+    /// Weight of the point in a rule for masses.
+    weight: f64,
+}
+
+impl<const D: usize, const N: usize> ShapePoint<D, N> {
+    fn new<S: Shape<D, N>>(xi: &Vector<D>, weight: f64) -> Self {
+        Self { values: S::values(xi), gradients: S::gradients(xi), weight }
+    }
+}
+
 /// Material of the cells of a region.
 pub(crate) struct Medium<const D: usize> {
     pub(crate) law: Box<dyn Pointwise<D>>,
@@ -102,7 +116,7 @@ pub struct Solid<const D: usize, const N: usize, S> {
     /// Count of numbers that a cell remembers.
     memory: usize,
     /// Rules for masses of straight and of curved cells.
-    mass_rules: [Rule<D>; 2],
+    mass_points: [Vec<ShapePoint<D, N>>; 2],
     hull: Hull,
     validity: Validity<D, N>,
     /// Whether the law of a region permits J ≤ 0.
@@ -133,7 +147,10 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         // The Jacobian of a curved quadrilateral or hexahedron has the degree Dk − 1 along each
         // axis, that of a simplex D(k − 1).
         let curved_mass = if S::Domain::TENSOR { (D + 2) * k - 1 } else { (D + 2) * k - D };
-        let mass_rules = [S::Domain::rule(2 * k), S::Domain::rule(curved_mass)];
+        let mass_points = [2 * k, curved_mass].map(|degree| {
+            let rule = S::Domain::rule(degree);
+            rule.iter().map(|(xi, weight)| ShapePoint::new::<S>(xi, weight)).collect::<Vec<_>>()
+        });
         let cells = mesh.cell_count();
         let mut solid = Self {
             mesh,
@@ -146,7 +163,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             curved: Vec::with_capacity(cells),
             memory: 0,
             force_rules,
-            mass_rules,
+            mass_points,
             hull: Hull::of::<D, N, S>(),
             validity: Validity::of::<S>(),
             tree: OnceLock::new(),
@@ -154,16 +171,23 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         };
         let shared = 0..solid.points.len();
         debug_assert!(!Self::HAS_CONSTANT_STRAIN || solid.force_rules[0].points.len() == 1);
+        let centre = S::gradients(&S::Domain::CENTRE);
+        let at_nodes = S::NODES.each_ref().map(|xi| ShapePoint::new::<S>(xi, 0.0));
         for cell in 0..cells {
             let x = solid.reference(cell);
-            let curved = reference::is_curved::<D, N, S>(&x);
+            let curved = reference::is_curved::<D, N, S>(&x, &centre);
             let at = |Degenerate { place, jacobian }| SolidError::Degenerate {
                 cell,
                 place: place.to_vec(),
                 jacobian,
             };
-            for xi in S::NODES.iter().chain(&solid.mass_rules[usize::from(curved)].points) {
-                reference::map::<D, N, S>(&x, xi).map_err(at)?;
+            let points = at_nodes.iter().chain(&solid.mass_points[usize::from(curved)]);
+            // Every point of a cell with constant strain has the same Jacobian.
+            for point in points.take(if Self::HAS_CONSTANT_STRAIN { 1 } else { usize::MAX }) {
+                let derivative = gradient(&x, &point.gradients);
+                reference::jacobian(&derivative).map_err(|jacobian| {
+                    at(Degenerate { place: reference::interpolate(&point.values, &x).0, jacobian })
+                })?;
             }
             // Between these points, the determinant of a curved cell may still change its sign.
             solid.validity.margin(&x).map_err(|loss| {
@@ -181,7 +205,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 solid.points.extend(own);
                 Place { points: first..solid.points.len(), inverse: Mat::identity(), volume: 1.0 }
             } else {
-                let derivative = gradient(&x, &S::gradients(&S::Domain::CENTRE));
+                let derivative = gradient(&x, &centre);
                 Place {
                     points: shared.clone(),
                     inverse: derivative.inverse(),
@@ -235,9 +259,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Shape functions and reference volume (× thickness) at the quadrature points for masses.
     fn each_mass_point(&self, cell: usize, mut visit: impl FnMut(&[f64; N], f64)) {
         let x = self.reference(cell);
-        for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
-            let jacobian = gradient(&x, &S::gradients(xi)).det();
-            visit(&S::values(xi), weight * jacobian * self.thickness);
+        for point in &self.mass_points[usize::from(self.curved[cell])] {
+            let jacobian = gradient(&x, &point.gradients).det();
+            visit(&point.values, point.weight * jacobian * self.thickness);
         }
     }
 }

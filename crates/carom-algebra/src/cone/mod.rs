@@ -11,11 +11,13 @@
 //! find which contacts are open, stick or slip (`sweeps.rs`), for which the problem is linear and
 //! is solved exactly (`exact.rs`).
 
+mod couplings;
 mod exact;
 mod kind;
 mod pivoting;
 mod sweeps;
 
+pub use couplings::Couplings;
 pub use kind::Kind;
 
 use crate::LinearError;
@@ -24,12 +26,12 @@ use crate::LinearError;
 const PROXIMAL: f64 = 1e-10;
 
 /// A problem of unilateral contact with friction for the forces z: motions u = A z + b.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Cone<'a> {
-    /// Matrix A, row by row.
-    pub matrix: Vec<f64>,
+    /// Matrix A.
+    pub matrix: &'a mut Couplings,
     /// Right-hand side b: the motions without forces.
-    pub right: Vec<f64>,
+    pub right: &'a mut [f64],
     /// Law of each unknown force.
     pub kinds: &'a [Kind],
     /// Whether A is singular, because rows of contacts depend on each other. The solution is then
@@ -47,29 +49,30 @@ impl Cone<'_> {
     /// μ, where there may be none.
     ///
     /// ```
-    /// use carom_algebra::{Cone, Kind};
+    /// use carom_algebra::{Cone, Couplings, Kind};
     /// let kinds = [Kind::Normal, Kind::Tangential { of: 0, coefficient: 0.5, limit: f64::INFINITY }];
-    /// let matrix = vec![2.0, 0.0, 0.0, 1.0];
-    /// let right = vec![-4.0, 3.0];
+    /// let matrix = &mut Couplings::dense(2, vec![2.0, 0.0, 0.0, 1.0]);
+    /// let right = &mut [-4.0, 3.0];
     /// let mut z = Vec::new();
     /// Cone { matrix, right, kinds: &kinds, is_dependent: false }.solve(&mut z)?;
     /// assert_eq!(z, [2.0, -1.0]); // P = 2; it slips against 0.5 P
     /// # Ok::<(), carom_algebra::LinearError>(())
     /// ```
-    pub fn solve(mut self, z: &mut Vec<f64>) -> Result<(), LinearError> {
+    pub fn solve(self, z: &mut Vec<f64>) -> Result<(), LinearError> {
         let n = self.right.len();
         z.resize(n, 0.0);
         if self.is_dependent {
             for i in 0..n {
-                let near = PROXIMAL * self.matrix[i * n + i];
-                self.matrix[i * n + i] += near;
+                let diagonal = self.matrix.at(i, i);
+                let near = PROXIMAL * diagonal;
+                self.matrix.set(i, i, diagonal + near);
                 self.right[i] -= near * z[i];
             }
         }
         if self.kinds.iter().all(|kind| *kind == Kind::Normal) {
-            pivoting::complementarity(&self.matrix, &self.right, z)
+            pivoting::complementarity(self.matrix, self.right, z)
         } else {
-            sweeps::coulomb(&self.matrix, &self.right, self.kinds, z)
+            sweeps::coulomb(self.matrix, self.right, self.kinds, z)
         }
     }
 }
@@ -86,8 +89,8 @@ mod tests {
         let kinds = [Kind::Normal; 2];
         let mut z = Vec::new();
         for _ in 0..2 {
-            let matrix = vec![1.0; 4];
-            let right = vec![-1.0, -2.0];
+            let matrix = &mut Couplings::dense(2, vec![1.0; 4]);
+            let right = &mut [-1.0, -2.0];
             Cone { matrix, right, kinds: &kinds, is_dependent: true }.solve(&mut z).unwrap();
         }
         assert!((z[0] + z[1] - 2.0).abs() < 1e-15);
@@ -112,8 +115,9 @@ mod tests {
             let tangential = |of| Kind::Tangential { of, coefficient: mu, limit: f64::INFINITY };
             let kinds = [Kind::Normal, Kind::Normal, tangential(0), tangential(1)];
             let mut z = Vec::new();
-            let cone =
-                Cone { matrix: matrix.clone(), right: right.clone(), kinds: &kinds, is_dependent: false };
+            let couplings = &mut Couplings::dense(4, matrix.clone());
+            let free = &mut right.clone();
+            let cone = Cone { matrix: couplings, right: free, kinds: &kinds, is_dependent: false };
             cone.solve(&mut z).unwrap();
             let found = brute_force(&matrix, &right, mu);
             let is_one = |other: &[f64; 4]| (0..4).all(|i| (other[i] - z[i]).abs() < 1e-9);

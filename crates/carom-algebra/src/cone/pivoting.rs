@@ -3,8 +3,10 @@
 //!
 //! Block principal pivoting (Júdice and Pires 1994): all indices that violate their condition
 //! change sides together. Without progress only the last one does (Murty 1974), which terminates
-//! for every positive definite D. D is dense: its size is the number of nodes in contact.
+//! for every positive definite D. Factors have the entries of each row from its first coupling on:
+//! contacts that are not coupled cost as many operations as there are.
 
+use super::Couplings;
 use crate::LinearError;
 
 /// Number of block pivots without progress after which single pivots follow.
@@ -14,30 +16,28 @@ const TIE: f64 = 1e-14;
 /// Pivot, as a fraction of its diagonal entry, below which the matrix counts as singular.
 const PIVOT: f64 = 1e-13;
 
-/// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`. `d` is the square matrix D, row by row; only its lower
-/// triangle is read.
+/// Solves 0 ≤ z ⊥ D z + b ≥ 0 into `z`. Only the lower triangle of D, `d`, is read.
 ///
 /// # Errors
 /// D is not positive definite on the indices of positive z.
-pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<(), LinearError> {
+pub(super) fn complementarity(d: &Couplings, b: &[f64], z: &mut Vec<f64>) -> Result<(), LinearError> {
     let n = b.len();
-    let entry = |i: usize, j: usize| d[i.max(j) * n + i.min(j)];
     let tie = TIE * b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let mut positive: Vec<bool> = b.iter().map(|&b| b < -tie).collect();
     let mut fewest = n + 1;
     let mut patience = PATIENCE;
-    let mut factor = Vec::new();
+    let mut factor = Envelope::default();
     let mut part = Vec::new();
     let mut wrong = Vec::new();
     for _ in 0..1000 + 100 * n {
-        let chosen: Vec<usize> = (0..n).filter(|&i| positive[i]).collect();
-        cholesky(&chosen, entry, &mut factor)?;
+        factor.of(d, &positive)?;
+        let chosen = || (0..n).filter(|&i| positive[i]);
         part.clear();
-        part.extend(chosen.iter().map(|&i| -b[i]));
-        substitute(&factor, &mut part);
+        part.extend(chosen().map(|i| -b[i]));
+        factor.substitute(&mut part);
         z.clear();
         z.resize(n, 0.0);
-        for (&i, &value) in chosen.iter().zip(&part) {
+        for (i, &value) in chosen().zip(&part) {
             z[i] = value;
         }
         wrong.clear();
@@ -45,7 +45,8 @@ pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<
             let outside = if positive[i] {
                 z[i] < 0.0
             } else {
-                chosen.iter().map(|&j| entry(i, j) * z[j]).sum::<f64>() + b[i] < -tie
+                let moving = d.columns(i).iter().filter(|&&j| positive[j]);
+                moving.map(|&j| d.at(i.max(j), i.min(j)) * z[j]).sum::<f64>() + b[i] < -tie
             };
             if outside {
                 wrong.push(i);
@@ -70,42 +71,101 @@ pub(super) fn complementarity(d: &[f64], b: &[f64], z: &mut Vec<f64>) -> Result<
     })
 }
 
-/// Cholesky factor L of the submatrix of the chosen indices, packed row by row.
-fn cholesky(
-    chosen: &[usize],
-    entry: impl Fn(usize, usize) -> f64,
-    factor: &mut Vec<f64>,
-) -> Result<(), LinearError> {
-    factor.clear();
-    for (r, &i) in chosen.iter().enumerate() {
-        let row = factor.len();
-        for (c, &j) in chosen[..=r].iter().enumerate() {
-            let column = c * (c + 1) / 2;
-            let known: f64 = (0..c).map(|k| factor[row + k] * factor[column + k]).sum();
-            let left = entry(i, j) - known;
-            if c < r {
-                factor.push(left / factor[column + c]);
-            } else if left > PIVOT * entry(i, i) {
-                factor.push(left.sqrt());
-            } else {
-                return Err(LinearError::Singular { size: chosen.len(), pivot: r, value: left });
-            }
-        }
-    }
-    Ok(())
+/// Cholesky factor L of a submatrix: of each row the entries from its first one on.
+#[derive(Default)]
+struct Envelope {
+    /// Index of each chosen row of the matrix among them.
+    places: Vec<usize>,
+    /// Start of each row, and end of the last.
+    starts: Vec<usize>,
+    /// Column of the first entry of each row.
+    first: Vec<usize>,
+    /// The last row that has an entry of each column.
+    last: Vec<usize>,
+    entries: Vec<f64>,
 }
 
-/// Overwrites x with (L Lᵀ)⁻¹ x.
-fn substitute(factor: &[f64], x: &mut [f64]) {
-    let n = x.len();
-    let at = |i: usize, j: usize| factor[i * (i + 1) / 2 + j];
-    for i in 0..n {
-        let known: f64 = (0..i).map(|j| at(i, j) * x[j]).sum();
-        x[i] = (x[i] - known) / at(i, i);
+impl Envelope {
+    /// Becomes the factor of the rows and columns that are chosen.
+    fn of(&mut self, d: &Couplings, chosen: &[bool]) -> Result<(), LinearError> {
+        self.places.clear();
+        self.places.resize(chosen.len(), 0);
+        self.starts.clear();
+        self.starts.push(0);
+        self.first.clear();
+        self.entries.clear();
+        let size = chosen.iter().filter(|chosen| **chosen).count();
+        for (r, i) in (0..chosen.len()).filter(|&i| chosen[i]).enumerate() {
+            self.places[i] = r;
+            let coupled = d.row(i).filter(|&(j, _)| j <= i && chosen[j]);
+            let row = self.entries.len();
+            for (j, value) in coupled {
+                let column = self.places[j];
+                if self.entries.len() == row {
+                    self.first.push(column);
+                }
+                self.entries.resize(row + column - self.first.last().copied().unwrap_or(column), 0.0);
+                self.entries.push(value);
+            }
+            if self.entries.len() == row {
+                self.first.push(r);
+                self.entries.push(0.0);
+            }
+            self.starts.push(self.entries.len());
+            self.eliminate(r, size)?;
+        }
+        self.last.clear();
+        self.last.extend(0..size);
+        for (r, &first) in self.first.iter().enumerate() {
+            self.last[first] = r;
+        }
+        for column in 1..size {
+            self.last[column] = self.last[column].max(self.last[column - 1]);
+        }
+        Ok(())
     }
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|j| at(j, i) * x[j]).sum();
-        x[i] = (x[i] - known) / at(i, i);
+
+    /// Overwrites the entries of the last row with those of the factor.
+    fn eliminate(&mut self, r: usize, size: usize) -> Result<(), LinearError> {
+        let (above, row) = self.entries.split_at_mut(self.starts[r]);
+        let first = self.first[r];
+        for column in first..=r {
+            let of_column = if column < r { &above[self.starts[column]..] } else { &[] };
+            let begin = first.max(self.first[column]);
+            let value = row[column - first];
+            if column < r {
+                let entries = begin..column;
+                let known: f64 = entries.map(|k| row[k - first] * of_column[k - self.first[column]]).sum();
+                row[column - first] = (value - known) / of_column[column - self.first[column]];
+                continue;
+            }
+            let known: f64 = (begin..r).map(|k| row[k - first] * row[k - first]).sum();
+            let left = value - known;
+            if left <= PIVOT * value || left.is_nan() {
+                return Err(LinearError::Singular { size, pivot: r, value: left });
+            }
+            row[r - first] = left.sqrt();
+        }
+        Ok(())
+    }
+
+    /// Entry of the factor; its row must have one in this column.
+    fn at(&self, row: usize, column: usize) -> f64 {
+        self.entries[self.starts[row] + column - self.first[row]]
+    }
+
+    /// Overwrites x with (L Lᵀ)⁻¹ x.
+    fn substitute(&self, x: &mut [f64]) {
+        let n = x.len();
+        for i in 0..n {
+            let known: f64 = (self.first[i]..i).map(|j| self.at(i, j) * x[j]).sum();
+            x[i] = (x[i] - known) / self.at(i, i);
+        }
+        for i in (0..n).rev() {
+            let below = (i + 1..=self.last[i]).filter(|&j| self.first[j] <= i);
+            let known: f64 = below.map(|j| self.at(j, i) * x[j]).sum();
+            x[i] = (x[i] - known) / self.at(i, i);
+        }
     }
 }
 
@@ -132,7 +192,7 @@ mod tests {
             }
             let b: Vec<f64> = (0..n).map(|k| noise(k + 77 * case)).collect();
             let mut z = Vec::new();
-            complementarity(&d, &b, &mut z).unwrap();
+            complementarity(&Couplings::dense(n, d.clone()), &b, &mut z).unwrap();
             for i in 0..n {
                 let w = (0..n).map(|j| d[i * n + j] * z[j]).sum::<f64>() + b[i];
                 assert!(
@@ -144,21 +204,49 @@ mod tests {
         }
     }
 
+    /// Contacts that are coupled with a few others each, without and with the zeros between them.
+    #[test]
+    fn zeros_that_are_left_out_change_no_bit() {
+        for case in 0..100 {
+            let n = 1 + case % 37;
+            let reach = case % 5;
+            let couples = |i: usize, j: usize| i.abs_diff(j) <= reach && (i + j) % 3 != 1 || i == j;
+            let value = |i: usize, j: usize| {
+                let off = 0.2 * noise(i.max(j) * n + i.min(j) + 1000 * case);
+                if i == j { 2.0 } else { off }
+            };
+            let entries = (0..n * n).map(|k| if couples(k / n, k % n) { value(k / n, k % n) } else { 0.0 });
+            let dense = Couplings::dense(n, entries.collect());
+            let mut sparse = Couplings::default();
+            sparse.reset(n, |i, columns| columns.extend((0..n).filter(|&j| couples(i, j)))).unwrap();
+            for i in 0..n {
+                (0..n).for_each(|j| sparse.set(i, j, value(i, j)));
+            }
+            let b: Vec<f64> = (0..n).map(|k| noise(k + 77 * case)).collect();
+            let [z, other] = [&dense, &sparse].map(|d| {
+                let mut z = Vec::new();
+                complementarity(d, &b, &mut z).unwrap();
+                z
+            });
+            assert_eq!(z, other, "case {case}");
+        }
+    }
+
     #[test]
     fn a_stiff_chain_and_no_rows_at_all() {
         let n = 40;
         let d: Vec<f64> = (0..n * n).map(|k| f64::from(2 * (k / n).min(k % n) as u32 + 1)).collect();
         let b: Vec<f64> = (0..n).map(|k| noise(k) - 0.2).collect();
         let mut z = Vec::new();
-        complementarity(&d, &b, &mut z).unwrap();
+        complementarity(&Couplings::dense(n, d.clone()), &b, &mut z).unwrap();
         for i in 0..n {
             let w = (0..n).map(|j| d[i * n + j] * z[j]).sum::<f64>() + b[i];
             assert!(z[i] >= 0.0 && w > -1e-11 && (z[i] * w).abs() < 1e-11);
         }
-        complementarity(&[], &[], &mut z).unwrap();
+        complementarity(&Couplings::default(), &[], &mut z).unwrap();
         assert!(z.is_empty());
         assert!(matches!(
-            complementarity(&[1.0, 1.0, 1.0, 1.0], &[-1.0, -2.0], &mut z),
+            complementarity(&Couplings::dense(2, vec![1.0; 4]), &[-1.0, -2.0], &mut z),
             Err(LinearError::Singular { pivot: 1, .. })
         ));
     }

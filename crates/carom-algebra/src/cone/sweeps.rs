@@ -13,6 +13,7 @@
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
 //! ```
 
+use super::Couplings;
 use super::exact::{State, second, settle};
 use super::kind::Kind;
 use crate::linear::LinearError;
@@ -46,8 +47,15 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
-pub(super) fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
+pub(super) fn coulomb(a: &Couplings, b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
     let n = kinds.len();
+    let normal = |j: usize| match kinds[j] {
+        Kind::Tangential { of, .. } => Some(of),
+        Kind::Normal => None,
+    };
+    // The tangential forces by their normal ones.
+    let mut tangential: Vec<usize> = (0..n).filter(|&j| normal(j).is_some()).collect();
+    tangential.sort_by_key(|&j| normal(j));
     z.resize(n, 0.0);
     let mut group: Vec<Option<usize>> = vec![None; n];
     for first in 0..n {
@@ -59,9 +67,10 @@ pub(super) fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) ->
         group[first] = Some(first);
         while let Some(&i) = members.get(next) {
             next += 1;
-            let belong = |j: usize| matches!(kinds[j], Kind::Tangential { of, .. } if of == i);
-            let owns = |j: usize| matches!(kinds[i], Kind::Tangential { of, .. } if of == j);
-            for j in (0..n).filter(|&j| a[i * n + j] != 0.0 || belong(j) || owns(j)) {
+            let coupled = a.row(i).filter(|(_, value)| *value != 0.0).map(|(j, _)| j);
+            let begin = tangential.partition_point(|&j| normal(j) < Some(i));
+            let belong = tangential[begin..].iter().copied().take_while(|&j| normal(j) == Some(i));
+            for j in coupled.chain(normal(i)).chain(belong) {
                 if group[j].is_none() {
                     group[j] = Some(first);
                     members.push(j);
@@ -70,7 +79,12 @@ pub(super) fn coulomb(a: &[f64], b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) ->
         }
         members.sort_unstable();
         let place = |i: usize| members.partition_point(|&member| member < i);
-        let part: Vec<f64> = members.iter().flat_map(|i| members.iter().map(|j| a[*i * n + *j])).collect();
+        let mut part = vec![0.0; members.len() * members.len()];
+        for (row, &i) in part.chunks_exact_mut(members.len()).zip(&members) {
+            for (j, value) in a.row(i).filter(|(j, _)| group[*j] == Some(first)) {
+                row[place(j)] = value;
+            }
+        }
         let right: Vec<f64> = members.iter().map(|&i| b[i]).collect();
         let local = |&i: &usize| match kinds[i] {
             Kind::Tangential { of, coefficient, limit } => {
@@ -286,7 +300,7 @@ mod tests {
             let b: Vec<f64> = (0..4).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
             let mut z = Vec::new();
             let limit = if k % 2 == 0 { f64::INFINITY } else { 0.2 };
-            coulomb(&A, &b, &KINDS(0.4, limit), &mut z).unwrap();
+            coulomb(&Couplings::dense(4, A.to_vec()), &b, &KINDS(0.4, limit), &mut z).unwrap();
             let u: Vec<f64> =
                 (0..4).map(|i| b[i] + (0..4).map(|j| A[i * 4 + j] * z[j]).sum::<f64>()).collect();
             for i in 0..2 {
@@ -355,7 +369,7 @@ mod tests {
             }
             change(&mut a, &mut b);
             let mut z = Vec::new();
-            coulomb(&a, &b, &kinds, &mut z).unwrap();
+            coulomb(&Couplings::dense(6, a.to_vec()), &b, &kinds, &mut z).unwrap();
             let u: Vec<f64> =
                 (0..6).map(|i| b[i] + (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
             for i in 0..2 {
@@ -417,7 +431,7 @@ mod tests {
             let b: Vec<f64> =
                 (0..6).map(|i| u[i] - (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
             let mut found = Vec::new();
-            coulomb(&a, &b, &kinds, &mut found).unwrap();
+            coulomb(&Couplings::dense(6, a.to_vec()), &b, &kinds, &mut found).unwrap();
             for i in 0..6 {
                 assert!((found[i] - z[i]).abs() < 1e-11, "{k}: {found:?} {z:?}");
             }
@@ -429,8 +443,9 @@ mod tests {
         let b = [-1.0, 0.5, 2.0, -0.3];
         let mut z = Vec::new();
         let mut normal = Vec::new();
-        coulomb(&A, &b, &KINDS(0.0, f64::INFINITY), &mut z).unwrap();
-        super::super::pivoting::complementarity(&[4.0, 1.0, 1.0, 3.0], &b[..2], &mut normal).unwrap();
+        coulomb(&Couplings::dense(4, A.to_vec()), &b, &KINDS(0.0, f64::INFINITY), &mut z).unwrap();
+        let normals = Couplings::dense(2, vec![4.0, 1.0, 1.0, 3.0]);
+        super::super::pivoting::complementarity(&normals, &b[..2], &mut normal).unwrap();
         assert!((z[0] - normal[0]).abs() < 1e-15 && (z[1] - normal[1]).abs() < 1e-15);
         assert_eq!(z[2..], [0.0, 0.0]);
     }

@@ -104,8 +104,7 @@ pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {
 }
 
 pub(crate) fn skin_facets(part: &BodyInstance) -> Vec<Vec<usize>> {
-    let skin = part.body.mesh().skin().into_iter();
-    skin.map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
+    part.skin().iter().map(|facet| facet.nodes.iter().map(|node| node + part.first_node).collect()).collect()
 }
 
 /// The nodes of a body's boundary, ascending.

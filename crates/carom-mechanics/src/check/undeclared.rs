@@ -70,8 +70,9 @@ impl Undeclared {
         let mut ways = Vec::new();
         let covered = Covered::all(model);
         let other = Covered::default();
-        let solid = |(_, part): &(usize, &BodyInstance)| skin(model, part).is_some();
-        for (a, part) in model.parts.iter().enumerate().filter(solid) {
+        let is_solid = |part: &BodyInstance| part.body.mesh().element.facet_shape().dimension() > 1;
+        let solid = model.parts.iter().enumerate().filter(|(_, part)| is_solid(part));
+        for (a, part) in solid.filter(|_| model.parts.len() > 1) {
             let nodes: Vec<(usize, f64)> = lengths(model, &skin_facets(part)).collect();
             for body in (0..model.parts.len()).filter(|&b| b != a) {
                 let covered = covered.get(&(a.min(body), a.max(body))).unwrap_or(&other);
@@ -234,14 +235,15 @@ fn own(model: &Model) -> Vec<Own> {
             contact_of.entry(facet).or_insert(k);
         }
     }
-    let skins = model.parts.iter().enumerate().filter_map(|(body, part)| {
+    let skins = model.parts.iter().enumerate().filter(|_| model.dimension == 2);
+    let skins = skins.filter_map(|(body, part)| {
         let of = |facet: &Vec<usize>| contact_of.get(facet.as_slice()).copied();
         let declared: Vec<Option<usize>> = skin_facets(part).iter().map(of).collect();
         let in_one = declared.iter().all(|contact| contact.is_some() && *contact == declared[0]);
         if in_one {
             None
         } else {
-            let skin = skin(model, part).filter(|_| model.dimension == 2)?;
+            let skin = skin(model, part)?;
             let contacts: BTreeSet<usize> = declared.iter().flatten().copied().collect();
             let nodes = |k: usize| model.contacts[k].facets.iter().flat_map(|(_, facets)| facets).flatten();
             let sides = contacts.into_iter().map(|k| nodes(k).copied().collect()).collect();

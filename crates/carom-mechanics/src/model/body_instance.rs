@@ -1,6 +1,8 @@
 //! A body instance: a body with its nodes and dofs in the numbering of the model.
 
-use carom_solid::{Body, Bounds};
+use std::sync::OnceLock;
+
+use carom_solid::{Body, Bounds, Facet};
 
 use super::formulas::NoValue;
 
@@ -19,6 +21,8 @@ pub struct BodyInstance {
     pub point_mass: f64,
     /// Global dofs of its cells, cell after cell.
     dofs: Vec<u32>,
+    /// Its boundary, found on the first query.
+    skin: OnceLock<Vec<Facet>>,
 }
 
 impl BodyInstance {
@@ -30,7 +34,7 @@ impl BodyInstance {
         let dofs =
             mesh.cells.iter().flat_map(|node| (0..d).map(move |i| ((first_node + node) * d + i) as u32));
         let dofs = dofs.collect();
-        Self { name, first_node, body, total_mass, point_mass: 0.0, dofs }
+        Self { name, first_node, body, total_mass, point_mass: 0.0, dofs, skin: OnceLock::new() }
     }
 
     /// The nodes that carry a rigid obstacle, the first one with a mass ≥ 0: a body without cells.
@@ -48,6 +52,16 @@ impl BodyInstance {
     pub fn is_massless(&self) -> bool {
         let cells = 0..self.body.mesh().cell_count();
         self.point_mass == 0.0 && cells.into_iter().all(|cell| self.body.density(cell) == 0.0)
+    }
+
+    /// Its whole boundary, [`Mesh::skin`](carom_solid::Mesh::skin).
+    pub fn skin(&self) -> &[Facet] {
+        self.skin.get_or_init(|| self.body.mesh().skin())
+    }
+
+    /// Whether each of its nodes lies on its boundary.
+    pub fn on_boundary(&self) -> Vec<bool> {
+        self.body.mesh().nodes_of(self.skin())
     }
 
     /// Count of numbers that its materials remember.

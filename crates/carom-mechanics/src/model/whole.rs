@@ -93,6 +93,8 @@ pub struct Model {
     pub threads: Threads,
 }
 
+/// Cells of a task of a thread.
+const BLOCK: usize = 4096;
 /// Gap, as a fraction of L, that counts as closed.
 const GAP_TOLERANCE: f64 = 1e-12;
 
@@ -334,9 +336,13 @@ impl Model {
         let mut least = f64::INFINITY;
         for (k, part) in self.parts.iter().enumerate() {
             let past = past_of(&self.parts, k, memory);
-            for cell in 0..part.body.mesh().cell_count() {
-                least = least.min(part.body.cell_min_det_f(cell, part.of(y), &past));
-            }
+            let count = part.body.mesh().cell_count();
+            let mut of_blocks = vec![f64::INFINITY; count.div_ceil(BLOCK)];
+            self.threads.for_each(&mut of_blocks, |block, least| {
+                let first = block * BLOCK;
+                *least = part.body.min_det_f(first..count.min(first + BLOCK), part.of(y), &past);
+            });
+            least = of_blocks.into_iter().fold(least, f64::min);
         }
         least
     }

@@ -30,7 +30,7 @@
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
 
-use carom_algebra::sums::sum;
+use carom_algebra::sums::{sum, sums};
 
 use super::finish::Finish;
 use super::increments::Increments;
@@ -47,6 +47,8 @@ use crate::timings::timed;
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
+/// Dofs of a task of a thread.
+const BLOCK: usize = 1 << 14;
 /// Work of internal forces, relative to the energies, that may be round-off.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -72,6 +74,13 @@ impl Explicit {
     }
 }
 
+/// Works of contact and friction in a step, with the other sign, and the potential at its end.
+struct Works {
+    contact: f64,
+    friction: f64,
+    potential: f64,
+}
+
 impl Stepper for Explicit {
     fn step(
         &self,
@@ -92,10 +101,11 @@ impl Stepper for Explicit {
             begun = Some(state);
         }
         let start = begun.as_ref().unwrap_or(state);
-        let mut next = work.copy(start);
-        for (y, v) in next.y.iter_mut().zip(&start.half_step.velocity) {
-            *y += dt * v;
-        }
+        let mut next = work.following(start);
+        model.threads.for_each_block(&mut next.y, BLOCK, |first, block| {
+            let before = start.y[first..].iter().zip(&start.half_step.velocity[first..]);
+            block.iter_mut().zip(before).for_each(|(now, (y, v))| *now = y + dt * v);
+        });
         let at = Configuration { before: None, y: &next.y, past: start.materials.past(dt) };
         next.ledger.strain = timed(&mut work.timings.assembly, || {
             model.internal_force(&at, &mut next.f_internal, &mut next.materials)
@@ -127,14 +137,13 @@ impl Explicit {
     fn check_stability(&self, start: &State, next: &State, dt: f64) -> Result<(), Rejected> {
         let moved =
             |[inverse_mass, before, now]: [f64; 3]| if inverse_mass > 0.0 { now - before } else { 0.0 };
-        let stiffness = sum(
-            [&self.inverse_mass, &start.y, &next.y, &start.f_internal, &next.f_internal],
-            |[inverse, before, now, pulled, pulls]| moved([inverse, before, now]) * (pulls - pulled),
+        let [stiffness, inertia] = sums(
+            [&self.mass, &self.inverse_mass, &start.y, &next.y, &start.f_internal, &next.f_internal],
+            |[m, inverse, before, now, pulled, pulls]| {
+                let moved = moved([inverse, before, now]);
+                [moved * (pulls - pulled), m * moved * moved]
+            },
         );
-        let inertia = sum([&self.mass, &self.inverse_mass, &start.y, &next.y], |[m, free @ ..]| {
-            let moved = moved(free);
-            m * moved * moved
-        });
         let round_off = ROUND_OFF * (start.ledger.kinetic + start.ledger.strain);
         if dt * dt * stiffness > 4.0 * inertia && stiffness > round_off {
             return Err(Rejected::Unstable { longest: 2.0 * (inertia / stiffness).sqrt() });
@@ -152,16 +161,31 @@ impl Explicit {
         }
         book_materials(next);
         let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
-        if in_contact(start) || in_contact(next) {
-            let velocity = &start.half_step.velocity;
-            let work = |before: &[f64], now: &[f64]| {
-                let powers = velocity.iter().zip(before.iter().zip(now));
-                powers.map(|(v, (before, now))| dt * v * 0.5 * (before + now)).sum::<f64>()
-            };
-            let rubbed = work(&start.f_friction, &next.f_friction);
-            next.ledger.contact_work -= work(&start.f_contact, &next.f_contact) - rubbed;
-            next.ledger.friction_work -= rubbed;
+        let touches = in_contact(start) || in_contact(next);
+        let velocity = &start.half_step.velocity;
+        let work = |before: &[f64], now: &[f64]| {
+            let powers = velocity.iter().zip(before.iter().zip(now));
+            powers.map(|(v, (before, now))| dt * v * 0.5 * (before + now)).sum::<f64>()
+        };
+        let of_contact = || Works {
+            contact: if touches { work(&start.f_contact, &next.f_contact) } else { 0.0 },
+            friction: if touches { work(&start.f_friction, &next.f_friction) } else { 0.0 },
+            potential: model.potential(&next.y),
+        };
+        // Twice the kinetic energy, and a·M a at both ends.
+        let of_inertia = || {
+            sums([&self.mass, &next.v, &next.a, &start.a], |[m, v, now, before]| {
+                [m * v * v, m * now * now, m * before * before]
+            })
+        };
+        let (works, [moving, now, before]) = model.threads.join(of_contact, of_inertia);
+        let lent = self.lent(model, next, dt, now) - self.lent(model, start, dt, before);
+        let ledger = &mut next.ledger;
+        if touches {
+            ledger.contact_work -= works.contact - works.friction;
+            ledger.friction_work -= works.friction;
         }
+        ledger.potential = works.potential;
         let State { impulses, contact_forces, .. } = next;
         for ((before, now), impulse) in start.contact_forces.iter().zip(contact_forces).zip(impulses) {
             for i in 0..3 {
@@ -171,18 +195,16 @@ impl Explicit {
         // Gaps are closed to a tolerance, over which the work of their forces is not known.
         let pressed = |state: &State| state.pairs.iter().flatten().map(|pair| -pair.lambda).sum::<f64>();
         next.ledger.unbooked += model.gap_tolerance * (pressed(start) + pressed(next));
-        next.ledger.unbooked += self.lent(model, next, dt) - self.lent(model, start, dt);
-        next.ledger.potential = model.potential(&next.y);
-        self.book_kinetic(next);
+        next.ledger.unbooked += lent;
+        next.ledger.kinetic = 0.5 * moving;
     }
 
     /// The part Δt²/8 a·M a of M v·v/2 that the works of a step do not contain: v_n is the mean of
     /// the half steps, and v_{n−½}·M v_{n+½}/2 changes by the works. A step of a share of the limit
     /// lends at most the square of that share of the strain energy, and Δt²/8 f·M⁻¹f of the loads:
-    /// what grows beyond is instability.
-    fn lent(&self, model: &Model, state: &State, dt: f64) -> f64 {
+    /// what grows beyond is instability. `inertia` is a·M a.
+    fn lent(&self, model: &Model, state: &State, dt: f64, inertia: f64) -> f64 {
         let factor = 0.125 * dt * dt;
-        let inertia = sum([&self.mass, &state.a], |[m, a]| m * a * a);
         let loads = if model.loads.is_empty() {
             0.0
         } else {
@@ -206,7 +228,8 @@ impl Explicit {
         let velocity = state.v.clone();
         let kinetic = state.ledger.kinetic;
         let last = state.half_step.dt;
-        let lent = self.lent(model, state, last);
+        let inertia = |state: &State| sum([&self.mass, &state.a], |[m, a]| m * a * a);
+        let lent = self.lent(model, state, last, inertia(state));
         self.advance_half_step(model, state, &before, dt, work, report)?;
         if state.pairs.iter().flatten().all(|p| !p.active) {
             // Without contact v_n remains bitwise unchanged.
@@ -216,7 +239,7 @@ impl Explicit {
         self.book_kinetic(state);
         // A shorter step lends less, and what is not lent any more is created.
         if last > 0.0 {
-            state.ledger.unbooked += self.lent(model, state, dt) - lent;
+            state.ledger.unbooked += self.lent(model, state, dt, inertia(state)) - lent;
         }
         report.begun = state.ledger.kinetic - kinetic;
         state.ledger.contact_work += report.begun;
@@ -231,9 +254,13 @@ impl Explicit {
     /// Accelerations without contact, into `a`.
     fn accelerate_freely(&self, model: &Model, state: &State, ties: &mut Option<TiedMass>, a: &mut Vec<f64>) {
         a.resize(state.y.len(), 0.0);
-        for i in 0..a.len() {
-            a[i] = self.inverse_mass[i] * (model.gravity[i] + state.f_external[i] - state.f_internal[i]);
-        }
+        let State { f_external, f_internal, .. } = state;
+        model.threads.for_each_block(a, BLOCK, |first, block| {
+            for (k, a) in block.iter_mut().enumerate() {
+                let i = first + k;
+                *a = self.inverse_mass[i] * (model.gravity[i] + f_external[i] - f_internal[i]);
+            }
+        });
         if let Some(ties) = ties {
             ties.correct(model, &self.inverse_mass, a);
         }
@@ -253,12 +280,18 @@ impl Explicit {
         self.accelerate_freely(model, state, &mut work.explicit.ties, &mut free);
         state.a = free;
         if model.contacts.is_empty() {
-            state.half_step.velocity.resize(before.len(), 0.0);
-            for i in 0..before.len() {
-                state.half_step.velocity[i] = before[i] + dt * state.a[i];
-                state.v[i] = before[i] + 0.5 * dt * state.a[i];
-            }
-            (state.half_step.longest, state.half_step.dt) = (dt, dt);
+            let State { a, v, half_step, .. } = state;
+            half_step.velocity.resize(before.len(), 0.0);
+            let blocks = half_step.velocity.chunks_mut(BLOCK).zip(v.chunks_mut(BLOCK));
+            model.threads.for_each(blocks, |block, (half, v)| {
+                let first = block * BLOCK;
+                for k in 0..half.len() {
+                    half[k] = before[first + k] + dt * a[first + k];
+                    v[k] = before[first + k] + 0.5 * dt * a[first + k];
+                }
+            });
+            half_step.longest = dt;
+            half_step.dt = dt;
             return Ok(());
         }
         let mut velocity = std::mem::take(&mut state.half_step.velocity);
@@ -283,17 +316,20 @@ impl Explicit {
             state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
             state.f_friction = friction;
         }
-        let contact = |i: usize| self.inverse_mass[i] * state.f_contact[i];
-        if let Some(ties) = &mut scratch.ties {
-            let mut pushed: Vec<f64> = (0..state.a.len()).map(contact).collect();
+        let State { a, v, f_contact, .. } = state;
+        let contact = |i: usize| self.inverse_mass[i] * f_contact[i];
+        let tied = scratch.ties.as_mut().map(|ties| {
+            let mut pushed: Vec<f64> = (0..a.len()).map(contact).collect();
             ties.correct(model, &self.inverse_mass, &mut pushed);
-            state.a.iter_mut().zip(pushed).for_each(|(a, pushed)| *a -= pushed);
-        } else {
-            (0..state.a.len()).for_each(|i| state.a[i] -= contact(i));
-        }
-        for i in 0..state.a.len() {
-            state.v[i] = before[i] + 0.5 * dt * state.a[i];
-        }
+            pushed
+        });
+        model.threads.for_each(a.chunks_mut(BLOCK).zip(v.chunks_mut(BLOCK)), |block, (a, v)| {
+            let first = block * BLOCK;
+            for k in 0..a.len() {
+                a[k] -= tied.as_ref().map_or_else(|| contact(first + k), |pushed| pushed[first + k]);
+                v[k] = before[first + k] + 0.5 * dt * a[k];
+            }
+        });
         book_contact_forces(model, state);
         (state.half_step.velocity, state.half_step.dt) = (velocity, dt);
         Ok(())

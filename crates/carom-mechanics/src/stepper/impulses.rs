@@ -8,7 +8,7 @@
 //! has one of slip, H at the predicted positions, whose impulse obeys Coulomb's law with the rate
 //! H v; e acts on normal rates alone, which can create energy.
 
-use carom_algebra::{Cone, Kind, LinearError};
+use carom_algebra::{Cone, Couplings, Kind, LinearError};
 use carom_contact::{Along, Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
@@ -199,7 +199,8 @@ impl Impulses {
             (0..i).for_each(|j| matrix[j * count + i] = matrix[i * count + j]);
         }
         values.clone_from(&self.values);
-        Cone { matrix, right, kinds: &self.kinds, is_dependent: self.dependent }.solve(values)
+        let matrix = &mut Couplings::dense(count, matrix);
+        Cone { matrix, right: &mut right, kinds: &self.kinds, is_dependent: self.dependent }.solve(values)
     }
 
     /// x += factor M⁻¹GᵀP.

@@ -2,7 +2,7 @@
 //! admissible (`explicit.rs`). With linearised gaps they solve a complementarity problem with
 //! G M⁻¹Gᵀ, with friction one of both forces; the linearisation is repeated.
 
-use carom_algebra::{Cone, Kind, LinearError};
+use carom_algebra::{Cone, Couplings, Kind, LinearError};
 use carom_contact::{Law, Pair, Pairing, Rows, Tangential, inner};
 
 use super::StepReport;
@@ -19,6 +19,8 @@ use crate::state::State;
 
 /// Linearisations of the gaps in a step before it is rejected; two to five are typical.
 const ROUNDS: u32 = 60;
+/// Dofs of a task of a thread.
+const BLOCK: usize = 1 << 14;
 
 /// A step from y_n and v_{n−½}.
 pub(super) struct Increments<'a> {
@@ -40,6 +42,13 @@ struct Gaps {
     moved_on: bool,
     /// Whether a pair is behind its facet at y_n.
     is_behind: bool,
+}
+
+/// A row with one of its nodes.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Meeting {
+    node: usize,
+    row: usize,
 }
 
 /// Whether rows depend on each other. Their gradients are those at y_n in every round, so that it
@@ -67,11 +76,8 @@ impl Increments<'_> {
         scratch.acting.clear();
         scratch.along.clear();
         scratch.kinds.clear();
-        scratch.free.clear();
-        scratch.free.extend(self.before.iter().zip(&self.state.a).map(|(v, a)| v + self.dt * a));
         carry_into(model, self.state, Pairing::near, &mut scratch.pairings);
-        scratch.at.resize(scratch.free.len(), 0.0);
-        velocity.clone_from(&scratch.free);
+        self.move_freely(velocity, scratch);
         let mut row = Rows::new(model.dimension);
         let mut is_behind = false;
         let mut dependence = Dependence::default();
@@ -104,6 +110,28 @@ impl Increments<'_> {
         Ok(is_behind)
     }
 
+    /// The velocity without contact, and the positions to which it leads.
+    fn move_freely(&self, velocity: &mut Vec<f64>, scratch: &mut Scratch) {
+        let size = self.before.len();
+        let Scratch { free, at, moved, touched, .. } = scratch;
+        touched.clear();
+        at.resize(size, 0.0);
+        for vector in [&mut *velocity, free, &mut moved.to] {
+            vector.resize(size, 0.0);
+        }
+        let State { y, a, .. } = self.state;
+        let blocks = velocity.chunks_mut(BLOCK).zip(free.chunks_mut(BLOCK)).zip(moved.to.chunks_mut(BLOCK));
+        self.model.threads.for_each(blocks, |block, ((velocity, free), to)| {
+            let first = block * BLOCK;
+            for k in 0..free.len() {
+                let i = first + k;
+                free[k] = self.before[i] + self.dt * a[i];
+                velocity[k] = free[k];
+                to[k] = y[i] + self.dt * free[k];
+            }
+        });
+    }
+
     /// Searches pairs for the motion with this velocity and measures their gaps; a violated pair
     /// joins the working set and stays.
     fn gaps(
@@ -116,12 +144,11 @@ impl Increments<'_> {
         let model = self.model;
         let state = self.state;
         let tolerance = self.model.gap_tolerance;
-        let Scratch { at, pairings, rows, loaded, .. } = scratch;
+        let Scratch { moved, pairings, rows, loaded, .. } = scratch;
         let motion = Forward { state, before: self.before, velocity, dt: self.dt };
-        motion.place(0.0, at);
         loaded.clear();
         loaded.extend(forces(pairings));
-        search(model, &state.y, at, pairings, &mut report.events);
+        search(model, &state.y, &moved.to, pairings, &mut report.events);
         // Gaps of new pairs are measured below with all others.
         let moved_on = !forces(pairings).eq(loaded.iter().copied());
         measure_into(model, &state.y, pairings, rows)?;
@@ -132,7 +159,7 @@ impl Increments<'_> {
                 continue;
             }
             // Gaps at the positions of the law replace those at y_n.
-            gaps.is_behind |= motion.gaps_of_law(contact, pairs, &mut rows[k], tolerance, at, row);
+            gaps.is_behind |= motion.gaps_of_law(contact, pairs, &mut rows[k], tolerance, moved, row);
             for (p, pair) in pairs.iter_mut().enumerate() {
                 let gap = rows[k].row(p).gap;
                 let wrong = if pair.lambda < 0.0 { gap.abs() } else { -gap };
@@ -182,12 +209,14 @@ impl Increments<'_> {
         let model = self.model;
         let dt = self.dt;
         let Scratch { free, at, pairings, rows, impulses, places, acting, kinds, ties, .. } = scratch;
-        let (matrix, mut right) = self.matrix(acting, at, ties)?;
+        let Scratch { matrix, right, .. } = scratch;
+        self.matrix(acting, at, ties, matrix)?;
+        right.clear();
+        right.resize(kinds.len(), 0.0);
         for (i, &(k, p)) in places.iter().enumerate() {
             let leaves = pairings[k].pairs[p].start.is_some();
             let restitution = if leaves { 0.0 } else { model.contacts[k].restitution };
-            right[i] = (1.0 + restitution) * rows[k].row(p).gap / (dt * dt)
-                - (0..kinds.len()).map(|j| matrix[i * kinds.len() + j] * impulses[j]).sum::<f64>();
+            right[i] = (1.0 + restitution) * rows[k].row(p).gap / (dt * dt) - matrix.along(i, impulses);
         }
         for i in places.len()..kinds.len() {
             right[i] = acting.row(i).along(free) / dt;
@@ -209,6 +238,7 @@ impl Increments<'_> {
     /// Gives the impulses to their pairs, and to the velocity.
     fn apply(&self, velocity: &mut [f64], scratch: &mut Scratch) {
         let Scratch { free, at, pairings, impulses, places, acting, along, kinds, ties, .. } = scratch;
+        let Scratch { moved, touched, .. } = scratch;
         for pair in pairings.iter_mut().flat_map(|pairing| &mut pairing.pairs) {
             (pair.lambda, pair.tangential.traction) = (0.0, [0.0; 2]);
         }
@@ -228,12 +258,22 @@ impl Increments<'_> {
             ties.correct(self.model, self.inverse_mass, at);
             for i in 0..free.len() {
                 velocity[i] = free[i] + self.dt * at[i];
+                moved.to[i] = self.state.y[i] + self.dt * velocity[i];
             }
+            at.fill(0.0);
             return;
         }
-        for i in 0..free.len() {
-            velocity[i] = free[i] + self.dt * self.inverse_mass[i] * at[i];
+        // The dofs of the last impulses too, which may not act any more.
+        let last = touched.len();
+        for row in acting.iter() {
+            touched.extend(row.entries().map(|(dof, _)| dof));
         }
+        for &i in &*touched {
+            velocity[i] = free[i] + self.dt * self.inverse_mass[i] * at[i];
+            moved.to[i] = self.state.y[i] + self.dt * velocity[i];
+        }
+        touched.iter().for_each(|&i| at[i] = 0.0);
+        touched.drain(..last);
     }
 
     /// Adds the slips over the step, and whether pairs stick, to those with a force. The last
@@ -254,21 +294,38 @@ impl Increments<'_> {
         }
     }
 
-    /// G M⁻¹Gᵀ over these rows, and room for a right-hand side. `column` is overwritten by zeros.
+    /// G M⁻¹Gᵀ over these rows into `matrix`. `column` is zero before and after.
     ///
     /// # Errors
-    /// If there is not enough memory for it: it is dense.
+    /// If there is not enough memory for it: with ties it is dense.
     fn matrix(
         &self,
         rows: &Rows,
         column: &mut [f64],
         ties: &mut Option<TiedMass>,
-    ) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
-        let count = rows.len();
-        let mut matrix: Vec<f64> = Vec::new();
-        matrix.try_reserve_exact(count * count).map_err(|_| LinearError::Memory { size: count })?;
-        matrix.resize(count * count, 0.0);
-        column.fill(0.0);
+        matrix: &mut Couplings,
+    ) -> Result<(), LinearError> {
+        let mut meeting: Vec<Meeting> = Vec::new();
+        if ties.is_none() {
+            let nodes = rows.iter().enumerate();
+            meeting
+                .extend(nodes.flat_map(|(row, of)| of.nodes.iter().map(move |&node| Meeting { node, row })));
+            meeting.sort_unstable();
+        }
+        matrix.reset(rows.len(), |i, columns| {
+            if ties.is_some() {
+                columns.extend(0..rows.len());
+                return;
+            }
+            for &node in rows.row(i).nodes {
+                let begin = meeting.partition_point(|other| other.node < node);
+                let same = meeting[begin..].iter().take_while(|other| other.node == node);
+                columns.extend(same.map(|other| other.row));
+            }
+            columns.sort_unstable();
+            columns.dedup();
+        })?;
+        let mut coupled = Vec::new();
         for (j, row) in rows.iter().enumerate() {
             for (dof, slope) in row.entries() {
                 column[dof] = self.inverse_mass[dof] * slope;
@@ -276,15 +333,17 @@ impl Increments<'_> {
             if let Some(ties) = ties {
                 ties.correct(self.model, self.inverse_mass, column);
             }
-            for (i, other) in rows.iter().enumerate() {
-                matrix[i * count + j] = other.along(column);
+            coupled.clear();
+            coupled.extend_from_slice(matrix.columns(j));
+            for &i in &coupled {
+                matrix.set(i, j, rows.row(i).along(column));
             }
             if ties.is_some() {
                 column.fill(0.0);
             }
             row.entries().for_each(|(dof, _)| column[dof] = 0.0);
         }
-        Ok((matrix, vec![0.0; count]))
+        Ok(())
     }
 }
 

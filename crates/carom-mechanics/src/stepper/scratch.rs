@@ -1,8 +1,9 @@
 //! Buffers of the explicit stepper.
 
-use carom_algebra::Kind;
+use carom_algebra::{Couplings, Kind};
 use carom_contact::{Along, Pairing, Rows};
 
+use super::forward::Moved;
 use super::tied_mass::TiedMass;
 use crate::model::LoadsAt;
 
@@ -11,8 +12,12 @@ use crate::model::LoadsAt;
 pub(crate) struct Scratch {
     /// v_{n+½} without contact.
     pub free: Vec<f64>,
-    /// Positions to be evaluated, and forces of contact.
+    /// Forces of contact while they are added up; zero otherwise.
     pub at: Vec<f64>,
+    /// Positions at the end of the step.
+    pub moved: Moved,
+    /// Dofs along which the impulses act.
+    pub touched: Vec<usize>,
     pub pairings: Vec<Pairing>,
     pub rows: Vec<Rows>,
     pub impulses: Vec<f64>,
@@ -25,6 +30,10 @@ pub(crate) struct Scratch {
     /// The components of the rows of slips.
     pub along: Vec<Along>,
     pub kinds: Vec<Kind>,
+    /// G M⁻¹Gᵀ over these rows.
+    pub matrix: Couplings,
+    /// Their motions without forces.
+    pub right: Vec<f64>,
     /// Contact, node and facet of the forces before a search.
     pub loaded: Vec<(usize, usize, usize)>,
     pub loads: LoadsAt,
@@ -38,6 +47,8 @@ impl Scratch {
         Self {
             free: Vec::new(),
             at: Vec::new(),
+            moved: Moved::default(),
+            touched: Vec::new(),
             pairings: Vec::new(),
             rows: Vec::new(),
             impulses: Vec::new(),
@@ -46,6 +57,8 @@ impl Scratch {
             slips: Rows::new(dimension),
             along: Vec::new(),
             kinds: Vec::new(),
+            matrix: Couplings::default(),
+            right: Vec::new(),
             loaded: Vec::new(),
             loads: LoadsAt::default(),
             ties: None,

@@ -28,7 +28,7 @@ fn meets_itself(k: usize, part: &BodyInstance) -> Option<Problem> {
         return None;
     }
     let mut starts = HashSet::new();
-    let node = mesh.skin().into_iter().map(|facet| facet.nodes[0]).find(|node| !starts.insert(*node))?;
+    let node = part.skin().iter().map(|facet| facet.nodes[0]).find(|node| !starts.insert(*node))?;
     let place = coordinates(&mesh.nodes.flat()[2 * node..2 * node + 2]);
     Some(Problem::new(
         format!("body[{k}].mesh"),

@@ -116,7 +116,7 @@ impl Moves {
             }
             let place = self.motions.len() - 1;
             for part in parts {
-                let on = part.body.mesh().on_boundary();
+                let on = part.on_boundary();
                 let nodes = part.nodes().zip(on).filter_map(|(node, on)| on.then_some(node));
                 self.by_dof.extend(nodes.map(|node| (node * case.dimension + axis, place)));
             }

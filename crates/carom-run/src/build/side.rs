@@ -25,8 +25,8 @@ impl Side {
         }
         let own: HashSet<&[usize]> = self.facets.iter().map(Vec::as_slice).collect();
         let part = &parts[self.part];
-        let skin = part.body.mesh().skin().into_iter();
-        let facets = skin.map(|facet| facet.nodes.iter().map(|n| n + part.first_node).collect());
+        let facets =
+            part.skin().iter().map(|facet| facet.nodes.iter().map(|n| n + part.first_node).collect());
         facets.filter(|facet: &Vec<usize>| !own.contains(facet.as_slice())).collect()
     }
 }

@@ -2,7 +2,7 @@
 //! their names.
 
 use carom_contact::{FrictionState, Pair, Rows};
-use carom_mechanics::model::{BodyInstance, Model};
+use carom_mechanics::model::Model;
 use carom_mechanics::{Depths, GridReport, Simulation, State, each_slip};
 
 use serde::{Deserialize, Serialize};
@@ -62,18 +62,11 @@ pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<
     row.extend([ledger.external_work, ledger.contact_work, ledger.friction_work, ledger.dissipation()]);
     row.extend([ledger.created.most(), ledger.scale()]);
 
-    let mut momentum = vec![0.0; state.v.len()];
-    model.mass.multiply_into(&state.v, &mut momentum);
-    row.extend((0..d).map(|i| momentum.iter().skip(i).step_by(d).sum::<f64>()));
-    let about = |i: usize| {
-        let j = (i + 1) % 3;
-        let k = (i + 2) % 3;
-        let pairs = state.y.chunks_exact(d).zip(momentum.chunks_exact(d));
-        pairs.map(|(y, p)| y[j] * p[k] - y[k] * p[j]).sum::<f64>()
-    };
+    let momenta = model.momenta(&state.y, &state.v);
+    row.extend(&momenta.linear[..d]);
     match d {
-        2 => row.push(about(2)),
-        3 => row.extend((0..3).map(about)),
+        2 => row.push(momenta.angular[2]),
+        3 => row.extend(momenta.angular),
         _ => {}
     }
     row.extend((0..d).map(|i| state.contact_forces.iter().map(|f| f[i]).sum::<f64>()));
@@ -95,7 +88,7 @@ pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<
     }
     for part in &model.parts {
         for field in [&state.y, &state.v] {
-            row.extend((0..d).map(|i| mean(part, field, weights, i)));
+            row.extend(&model.mean(part, weights, field)[..d]);
         }
     }
     if !yielding.is_empty() {
@@ -163,11 +156,6 @@ fn moment(dofs: &[usize], forces: &[f64], y: &[f64], about: &[f64]) -> [f64; 3] 
         }
     }
     moment
-}
-
-fn mean(part: &BodyInstance, field: &[f64], weights: &[f64], i: usize) -> f64 {
-    let d = part.body.mesh().dimension();
-    part.nodes().map(|node| weights[node] * field[node * d + i]).sum()
 }
 
 /// Events since the previous row: their sums do not depend on how often rows are written.

@@ -82,7 +82,7 @@ pub(super) fn stiff_bending(_: &Case, model: &Model) -> Vec<Found> {
 fn too_stiff(part: &BodyInstance) -> Option<String> {
     let mesh = part.body.mesh();
     let area = mesh.area();
-    let skin = mesh.skin();
+    let skin = part.skin();
     let length = |facet: &Facet| {
         let [a, b] = [0, 1].map(|k| &mesh.nodes[facet.nodes[k]]);
         (b[0] - a[0]).hypot(b[1] - a[1])

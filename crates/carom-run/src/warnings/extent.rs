@@ -15,7 +15,7 @@ pub(super) fn along(model: &Model, part: &BodyInstance, direction: &[f64; 3]) ->
 /// smallest extent of a compact body. Facets are those of their corners.
 pub(super) fn thickness(part: &BodyInstance, volume: f64) -> f64 {
     let mesh = part.body.mesh();
-    2.0 * volume / mesh.skin().iter().map(|facet| size(mesh, facet)).sum::<f64>()
+    2.0 * volume / part.skin().iter().map(|facet| size(mesh, facet)).sum::<f64>()
 }
 
 /// Length or area of a facet; 1 of an end of a bar.

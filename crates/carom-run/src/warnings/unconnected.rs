@@ -32,7 +32,7 @@ pub(super) fn unconnected_bodies(case: &Case, model: &Model) -> Vec<Found> {
     for (k, a) in bodies.iter().enumerate() {
         // Facets by the later body that has all of their nodes.
         let mut common: BTreeMap<usize, Vec<Vec<f64>>> = BTreeMap::new();
-        for facet in a.body.mesh().skin() {
+        for facet in a.skin() {
             let nodes: Vec<usize> = facet.nodes.iter().map(|node| node + a.first_node).collect();
             let mut others = places.of_other_bodies(nodes[0], k);
             others.retain(|other| nodes.iter().all(|&n| places.of_other_bodies(n, k).contains(other)));
@@ -80,7 +80,7 @@ impl<'a> Places<'a> {
     fn new(model: &'a Model, bodies: &[&BodyInstance]) -> Self {
         let mut places = Self { model, cell: 2.0 * NEAR * model.scale, nodes: HashMap::new() };
         for (body, part) in bodies.iter().enumerate() {
-            for (number, _) in part.nodes().zip(part.body.mesh().on_boundary()).filter(|(_, on)| *on) {
+            for (number, _) in part.nodes().zip(part.on_boundary()).filter(|(_, on)| *on) {
                 places.nodes.entry(places.key(number)).or_default().push(Node { body, number });
             }
         }

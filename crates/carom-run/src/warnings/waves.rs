@@ -77,6 +77,6 @@ fn volume(part: &BodyInstance) -> f64 {
 /// Whether no node of a body's boundary can move: it serves as an obstacle.
 fn is_held(model: &Model, part: &BodyInstance) -> bool {
     let d = model.dimension;
-    let boundary = part.nodes().zip(part.body.mesh().on_boundary()).filter(|(_, on)| *on);
+    let boundary = part.nodes().zip(part.on_boundary()).filter(|(_, on)| *on);
     boundary.flat_map(|(node, _)| node * d..(node + 1) * d).all(|dof| model.fixed[dof])
 }

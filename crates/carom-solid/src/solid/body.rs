@@ -1,10 +1,12 @@
 //! The [`Body`] interface of a solid.
 
+use std::ops::Range;
+
 use carom_algebra::{Mat, Vector, wide};
 
 use super::memory::Energies;
 use super::rotation::{angle, strain};
-use super::{Medium, Place, Solid};
+use super::{Medium, Place, ShapePoint, Solid};
 use crate::body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Response};
 use crate::bounds::Bounds;
 use crate::material::{NotPositive, Past, Pointwise};
@@ -56,14 +58,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
     fn each_moved_point(&self, cell: usize, y: &[f64], visit: &mut dyn FnMut(&[f64], &[f64], &[f64], f64)) {
         let x = self.reference(cell);
         let u = self.displacements(cell, y);
-        for (xi, weight) in self.mass_rules[usize::from(self.curved[cell])].iter() {
-            let values = S::values(xi);
-            let local = S::gradients(xi);
-            let derivative = gradient(&x, &local);
+        for ShapePoint { values, gradients, weight, .. } in &self.mass_points[usize::from(self.curved[cell])]
+        {
+            let derivative = gradient(&x, gradients);
             let inverse_transposed = derivative.inverse().transposed();
-            let h = gradient(&u, &local.map(|g| inverse_transposed.apply(&g)));
-            let place = reference::interpolate(&values, &x);
-            let moved = place + reference::interpolate(&values, &u);
+            let h = gradient(&u, &gradients.map(|g| inverse_transposed.apply(&g)));
+            let place = reference::interpolate(values, &x);
+            let moved = place + reference::interpolate(values, &u);
             visit(&place.0, &moved.0, h.0.as_flattened(), weight * derivative.det() * self.thickness);
         }
     }
@@ -156,19 +157,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         Ok(())
     }
 
-    fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64 {
-        let u = self.displacements(cell, y);
-        let law = &self.medium(cell).law;
-        let past = past.part(cell, self.memory);
-        let size = law.memory();
-        let Place { points, inverse, .. } = &self.places[cell];
-        let blocks = self.points[points.clone()].iter().enumerate();
-        let ratios = blocks.flat_map(|(block, points)| {
-            let h = points.gradient(&u, inverse);
-            let first = block * LANES;
-            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l), &past.part(first + l, size)))
-        });
-        ratios.fold(f64::INFINITY, f64::min)
+    fn min_det_f(&self, cells: Range<usize>, y: &[f64], past: &Past) -> f64 {
+        if Self::HAS_CONSTANT_STRAIN && self.memory == 0 && cells.start.is_multiple_of(LANES) {
+            return self.constant_min_det_f(cells, y);
+        }
+        cells.map(|cell| self.cell_min_det_f(cell, y, past)).fold(f64::INFINITY, f64::min)
     }
 
     fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64 {
@@ -269,6 +262,22 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             energies.stored += self.add_mean(mean, cell, at, ask, numbers)?;
         }
         Ok(energies)
+    }
+
+    /// Smallest J over the quadrature points of a cell.
+    fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64 {
+        let u = self.displacements(cell, y);
+        let law = &self.medium(cell).law;
+        let past = past.part(cell, self.memory);
+        let size = law.memory();
+        let Place { points, inverse, .. } = &self.places[cell];
+        let blocks = self.points[points.clone()].iter().enumerate();
+        let ratios = blocks.flat_map(|(block, points)| {
+            let h = points.gradient(&u, inverse);
+            let first = block * LANES;
+            (0..points.count).map(move |l| law.volume_ratio_at(&get(&h, l), &past.part(first + l, size)))
+        });
+        ratios.fold(f64::INFINITY, f64::min)
     }
 
     /// Force of a cell; returns its energy.

@@ -1,10 +1,13 @@
 //! Cells with constant strain, simplices of degree 1: they have one quadrature point, and four
 //! cells are computed at once. Each lane gives the bits of its cell alone.
 
+use std::ops::Range;
+
 use carom_algebra::{Four, Mat, wide};
 
 use super::Solid;
 use crate::body::Inverted;
+use crate::material::Past;
 use crate::points::{LANES, Lanes, Mats, Packed, get, set};
 use crate::shape::{Domain, Shape};
 
@@ -127,11 +130,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         Some(densities)
     }
 
-    /// Forces and energies of up to four cells, those of a packed block; returns false if one is
-    /// inverted.
+    /// H of up to four cells, those of a packed block.
     #[inline(always)]
-    fn forces_of_four(&self, first: usize, y: &[f64], forces: &mut [f64], energies: &mut [f64]) -> bool {
-        let count = energies.len();
+    fn gradients_of_four(&self, first: usize, count: usize, y: &[f64]) -> Mats<D> {
         let reference = self.mesh.nodes.of_dimension::<D>();
         let y = y.as_chunks::<D>().0;
         let cells = &self.mesh.cells.as_chunks::<N>().0[first..first + count];
@@ -157,7 +158,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 }
             }
         }
-        let Packed { maps, weights } = &self.packed[first / LANES];
+        let maps = &self.packed[first / LANES].maps;
         let mut h = [[[0.0; LANES]; D]; D];
         for i in 0..D {
             for j in 0..D {
@@ -168,6 +169,35 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 }
             }
         }
+        h
+    }
+
+    /// Smallest J of consecutive cells, of which the first is that of a packed block.
+    pub(super) fn constant_min_det_f(&self, cells: Range<usize>, y: &[f64]) -> f64 {
+        let none = Past::default();
+        let mut least = f64::INFINITY;
+        for first in cells.clone().step_by(LANES) {
+            let count = LANES.min(cells.end - first);
+            let h = wide(
+                #[inline(always)]
+                || self.gradients_of_four(first, count, y),
+            );
+            for l in 0..count {
+                let law = &self.medium(first + l).law;
+                least = least.min(law.volume_ratio_at(&get(&h, l), &none));
+            }
+        }
+        least
+    }
+
+    /// Forces and energies of up to four cells, those of a packed block; returns false if one is
+    /// inverted.
+    #[inline(always)]
+    fn forces_of_four(&self, first: usize, y: &[f64], forces: &mut [f64], energies: &mut [f64]) -> bool {
+        let count = energies.len();
+        let gradients = &self.points[0].gradients;
+        let Packed { maps, weights } = &self.packed[first / LANES];
+        let h = self.gradients_of_four(first, count, y);
         let mut stresses = [[[0.0; LANES]; D]; D];
         let Some(densities) = self.stresses_of_four(first, count, &h, &mut stresses) else { return false };
         let mut pulled = [[[0.0; LANES]; D]; D];

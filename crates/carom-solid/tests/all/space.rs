@@ -236,3 +236,33 @@ fn points_are_found_and_inverted() {
         assert!(body.locate(&vec![3.0; d]).is_empty());
     }
 }
+
+/// Facets with the same nodes in several cells, also of three cells, are none of the boundary.
+#[test]
+fn the_boundary_is_what_one_cell_alone_has() {
+    let mut meshes = Vec::new();
+    for element in [Element::Tet4, Element::Tet10, Element::Hex8, Element::Hex27] {
+        meshes.push(generate::cuboid(element, [0.0; 3], [1.0; 3], [3, 2, 4]).unwrap());
+    }
+    let mut thrice = meshes[0].clone();
+    thrice.cells.extend_from_within(0..40);
+    meshes.push(thrice);
+    for mesh in meshes {
+        let mut alone = std::collections::BTreeMap::new();
+        for cell in 0..mesh.cell_count() {
+            for facet in mesh.element.facets() {
+                let nodes: Vec<usize> = facet.iter().map(|&a| mesh.cell(cell)[a]).collect();
+                let mut key = nodes.clone();
+                key.sort_unstable();
+                let count = alone.entry(key).or_insert((0, cell, nodes));
+                count.0 += 1;
+            }
+        }
+        let expected: Vec<_> = alone.into_values().filter(|(count, ..)| *count == 1).collect();
+        let skin = mesh.skin();
+        assert_eq!(skin.len(), expected.len());
+        for (facet, (_, cell, nodes)) in skin.iter().zip(&expected) {
+            assert_eq!((facet.cell, &facet.nodes), (*cell, nodes), "{:?}", mesh.element);
+        }
+    }
+}
