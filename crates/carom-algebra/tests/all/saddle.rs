@@ -51,9 +51,9 @@ fn meets_both_lines_of_the_system() {
     }
 }
 
-/// Each row of a chain shares entries with the next one. What a row adds to S is in proportion to S,
-/// not to what the rows before it have added: there it grows from row to row, S has no factor, and
-/// multipliers have no correct digits.
+/// Each row of a chain shares entries with the next one. What a row adds to S is in proportion to
+/// S, not to what the rows before it have added, which would grow from row to row until S had no
+/// factor, and multipliers no correct digits.
 #[test]
 fn rows_of_a_chain_are_augmented_alike() {
     let m = 60;

@@ -199,8 +199,8 @@ fn derivatives_of_partly_facing_points_agree_with_differences() {
     }
 }
 
-/// Over an end of the primary the gradient includes the motion of that end. Quadrature over parts of
-/// curved facets is accurate to 1e-6 here.
+/// Over an end of the primary the gradient includes the motion of that end. Quadrature over parts
+/// of curved facets is accurate to 1e-6 here.
 #[test]
 fn gradients_over_the_ends_of_the_primary_agree_with_differences() {
     for shape in SHAPES {

@@ -257,8 +257,8 @@ impl Bodies<'_> {
 }
 
 /// The nodes with a bound on their depth beside gaps that are zero on average, which keep out no
-/// single node: beside a kink of the other side one would enter far. Springs let in every node; with
-/// them only corners are kept out.
+/// single node: beside a kink of the other side one would enter far. Springs let in every node;
+/// with them only corners are kept out.
 fn bounded(spec: &ContactSpec, nodes: NodesWithDepth) -> NodesWithDepth {
     match spec.enforcement {
         case::Enforcement::Penalty => nodes.without_depth(),

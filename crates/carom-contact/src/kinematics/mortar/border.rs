@@ -7,7 +7,8 @@
 //!
 //! where ∂x is that at a fixed ξ. With the gap there, its motion adds g ∂ξ to the gradient of the
 //! integral, with a negative sign where the primary begins. Without it, forces would have no
-//! potential where bodies overhang, and with springs they would create energy. The second derivative
+//! potential where bodies overhang, and with springs they would create energy. The second
+//! derivative
 //!
 //! ```text
 //! ∂ξ ⊗ ∇g + ∇g ⊗ ∂ξ + g' ∂ξ ⊗ ∂ξ + g ∂²ξ,    g' = ∇_x g·x',

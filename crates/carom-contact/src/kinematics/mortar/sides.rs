@@ -93,8 +93,8 @@ impl Mortar {
         }
     }
 
-    /// With springs in place of multipliers: where little of a coefficient's area has a partner, its
-    /// pressure is no larger than elsewhere, and no neighbour carries it.
+    /// With springs in place of multipliers: where little of a coefficient's area has a partner,
+    /// its pressure is no larger than elsewhere, and no neighbour carries it.
     #[must_use]
     pub fn with_springs(self) -> Self {
         Self { springs: true, ..self }
