@@ -122,7 +122,12 @@ fn largest_of_cells(model: &Model) -> Option<f64> {
             let mut numbers = vec![0.0; dofs + dofs * dofs];
             for (k, square) in squares.iter_mut().enumerate() {
                 cell_lumped_mass(&*part.body, first + k, &mut work, &mut mass);
-                let out = Response { numbers: &mut numbers, energies: &mut [0.0], memory: &mut [], dissipated: &mut [] };
+                let out = Response {
+                    numbers: &mut numbers,
+                    energies: &mut [0.0],
+                    memory: &mut [],
+                    dissipated: &mut [],
+                };
                 part.body.respond(first + k, &Configuration::at(y), Ask::Tangent, out)?;
                 let tangent = numbers[dofs..].chunks_exact(dofs).enumerate();
                 let scaled = tangent.flat_map(|(i, row)| {
