@@ -13,11 +13,13 @@ import sys
 from pathlib import Path
 
 PANES = [
-    ("stress", "error", "averaged stress: error"),
-    ("stress", "noise", "stress: noise"),
-    ("trajectory", "error", "trajectory: error"),
-    ("energy", "error", "energy dissipated or created"),
+    ("stress", "error", "averaged stress: error", "share of the reference, r.m.s."),
+    ("stress", "noise", "stress: noise", "share of the reference, r.m.s."),
+    ("trajectory", "error", "trajectory: error", "share of the largest displacement"),
+    ("energy", "error", "energy dissipated or created", "share of the energy scale"),
 ]
+# Okabe and Ito's colours, which the colour-blind tell apart.
+COLOURS = ["#0072B2", "#E69F00", "#009E73", "#D55E00"]
 
 
 def rows(study):
@@ -43,8 +45,8 @@ def draw(found, figure):
     plt.rcParams["svg.hashsalt"] = "which-rho"
     methods = sorted({named(row) for row in found}, key=order)
     series = sorted({(row["method"].endswith(", mortar"), row["level"]) for row in found})
-    _, panes = plt.subplots(2, 2, figsize=(10, 7), sharex=True)
-    for pane, (goal, value, title) in zip(panes.flat, PANES):
+    picture, panes = plt.subplots(2, 2, figsize=(10, 7.4), sharex=True)
+    for pane, (goal, value, title, unit) in zip(panes.flat, PANES):
         for k, (mortar, level) in enumerate(series):
             own = [
                 row
@@ -60,14 +62,16 @@ def draw(found, figure):
             step = max((f"{float(row['step']):g}" for row in own), key=float, default="")
             label = f"{'mortar' if mortar else 'node-to-segment'}, Δt = {step}"
             marker = "s" if mortar else "o"
-            pane.errorbar(x, y, bars, fmt=marker, ms=4, lw=0.8, label=label, color=f"C{k}")
+            pane.errorbar(x, y, bars, fmt=marker, ms=4, lw=0.8, label=label, color=COLOURS[k])
         if goal == "energy":
             pane.set_yscale("log")
         pane.set_title(title, fontsize=10)
+        pane.set_ylabel(unit, fontsize=9)
         pane.set_xticks(range(len(methods)), methods, rotation=60, ha="right", fontsize=8)
         pane.grid(alpha=0.3)
-    panes.flat[1].legend(fontsize=7)
-    plt.tight_layout()
+    marks, labels = panes.flat[0].get_legend_handles_labels()
+    plt.tight_layout(rect=(0, 0, 1, 0.96))
+    picture.legend(marks, labels, loc="upper center", ncols=4, fontsize=9, frameon=False)
     plt.savefig(figure, metadata={"Date": None} if str(figure).endswith(".svg") else None)
 
 
@@ -77,7 +81,7 @@ def main():
     for verdict in json.loads((study / "verdict.json").read_text()):
         print(f"{verdict['goal']}: {verdict['recommended']} ({verdict['confidence']}), error {verdict['error']}")
         print(f"  {'; '.join(verdict['reasons'] + verdict['doubts'])}")
-    for goal, value, title in PANES:
+    for goal, value, title, _ in PANES:
         for level in sorted({row["level"] for row in found}):
             for mortar in (False, True):
                 own = [
