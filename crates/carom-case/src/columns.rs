@@ -10,7 +10,7 @@ use super::{
 
 /// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
-    let axes = of.word().trim_start_matches("sigma_");
+    let axes = of.word().trim_start_matches("sigma_").trim_start_matches("strain_");
     let lacks = |axis: &str| axes.len() == 2 && axes.contains(axis);
     !(dimension < 2 && (lacks("y") || of == Quantity::VonMises) || dimension < 3 && lacks("z"))
 }

@@ -49,30 +49,53 @@ impl Law {
         Ok(Self { name, object: Arc::new(object.clone().unbind()), memory, failure })
     }
 
+    /// Count of numbers that a point remembers.
+    pub(crate) fn memory(&self) -> usize {
+        self.memory
+    }
+
     fn called(&self, py: Python<'_>, f: [[f64; 3]; 3], memory: &[f64]) -> PyResult<Point> {
         let numpy = py.import("numpy")?;
         let numbers = |values: &Bound<'_, PyAny>, count: usize, what: &str| -> PyResult<Vec<f64>> {
             let flat = numpy.call_method1("ravel", (values,))?.call_method1("astype", ("float64",))?;
             let flat: PyReadonlyArray1<'_, f64> = flat.extract()?;
             let found = flat.as_array().to_vec();
+            if let Some(number) = found.iter().find(|number| !number.is_finite()) {
+                return Err(self.not_finite(what, *number));
+            }
             if found.len() == count { Ok(found) } else { Err(self.wrong(what, found.len(), count)) }
+        };
+        let finite = |number: f64, what: &str| {
+            if number.is_finite() { Ok(number) } else { Err(self.not_finite(what, number)) }
         };
         let gradient = PyArray1::from_slice(py, f.as_flattened()).reshape([3, 3])?;
         let arguments = (gradient, PyArray1::from_slice(py, memory));
         let answer = self.object.bind(py).call_method1("response", arguments)?;
-        let answer: Bound<'_, PyTuple> = answer.extract().map_err(|_| self.wrong("a tuple", 0, 5))?;
+        let Ok(answer) = answer.cast::<PyTuple>() else {
+            let kind = answer.get_type().name()?;
+            let name = &self.name;
+            return Err(PyValueError::new_err(format!(
+                "`response` of the law of `{name}` must return a tuple (stored, dissipated, P, dP/dF, memory), not \
+                 a {kind}"
+            )));
+        };
         if answer.len() != 5 {
             return Err(self.wrong("(stored, dissipated, P, dP/dF, memory)", answer.len(), 5));
         }
         Ok(Point {
             f,
             det_f: 0.0,
-            stored: answer.get_item(0)?.extract()?,
-            dissipated: answer.get_item(1)?.extract()?,
+            stored: finite(answer.get_item(0)?.extract()?, "the stored energy")?,
+            dissipated: finite(answer.get_item(1)?.extract()?, "the dissipated energy")?,
             stress: numbers(&answer.get_item(2)?, 9, "P of shape (3, 3)")?,
             moduli: numbers(&answer.get_item(3)?, 81, "dP/dF of shape (3, 3, 3, 3)")?,
             memory: numbers(&answer.get_item(4)?, self.memory, "the new memory")?,
         })
+    }
+
+    fn not_finite(&self, what: &str, number: f64) -> PyErr {
+        let name = &self.name;
+        PyValueError::new_err(format!("`response` of the law of `{name}` returns {number} for {what}"))
     }
 
     fn wrong(&self, what: &str, found: usize, count: usize) -> PyErr {

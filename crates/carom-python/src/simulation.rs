@@ -33,6 +33,8 @@ pub(crate) struct Simulation {
     failure: Failure,
     /// Names of the functions of the program.
     given: Vec<String>,
+    /// Materials whose laws are of the program, each with the count of numbers that it remembers.
+    laws: Vec<String>,
 }
 
 impl Simulation {
@@ -75,6 +77,9 @@ impl Simulation {
             let material: String = material.extract()?;
             own.push((material.clone(), Law::new(material, &object, failure.clone())?));
         }
+        let mut remembered: Vec<String> =
+            own.iter().map(|(material, law)| format!("{material} ({} numbers)", law.memory())).collect();
+        remembered.sort();
         let spec = case.with(functions);
         let started = py.detach(|| {
             let setup = Setup::new(&spec).threads(threads);
@@ -87,7 +92,7 @@ impl Simulation {
             return Err(error);
         }
         let inner = started.map_err(|problems| of_problems(&case.document, &problems))?;
-        Ok(Self { case: spec, inner: Mutex::new(inner), failure, given: names })
+        Ok(Self { case: spec, inner: Mutex::new(inner), failure, given: names, laws: remembered })
     }
 
     /// Advances to the next grid time: Newton iterations, rejected attempts, activations, releases,
@@ -171,15 +176,17 @@ impl Simulation {
     }
 
     /// The row that a run would record now.
-    fn row(&self) -> PyResult<Vec<f64>> {
+    fn row(&self, py: Python<'_>) -> PyResult<Vec<f64>> {
         let inner = self.inner()?;
-        Ok(inner.rows.row(&inner.library))
+        // Laws in Python are called on other threads.
+        Ok(py.detach(|| inner.rows.row(&inner.library)))
     }
 
     /// The active contact nodes, by column.
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let inner = self.inner()?;
-        tables::contact(py, &inner.rows.contact(&inner.library), self.case.facts().contact_columns())
+        let contact = py.detach(|| inner.rows.contact(&inner.library));
+        tables::contact(py, &contact, self.case.facts().contact_columns())
     }
 
     /// Units of these columns.
@@ -189,29 +196,35 @@ impl Simulation {
         Ok(tables::contact_units(&history, self.case.facts().contact_columns()))
     }
 
-    /// The state as bytes, with the names of the functions and the case.
+    /// The state as bytes, with the names of the functions and the laws, and the case.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let inner = self.inner()?;
-        let bytes = postcard::to_stdvec(&(&self.given, self.resolved().to_string(), inner.library.state()));
+        let all = (&self.given, &self.laws, self.resolved().to_string(), inner.library.state());
+        let bytes = postcard::to_stdvec(&all);
         let bytes = bytes.map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// Continues from a checkpoint of the same case with the same functions.
+    /// Continues from a checkpoint of the same case with the same functions and laws.
     fn restore(&self, checkpoint: &[u8]) -> PyResult<()> {
         let wrong = |why: &str| PyValueError::new_err(format!("this is not a checkpoint: {why}"));
-        let read: Result<((Vec<String>, String, State), _), _> = postcard::take_from_bytes(checkpoint);
-        let ((given, case, state), rest) = read.map_err(|error| wrong(&error.to_string()))?;
+        let read: Result<((Vec<String>, Vec<String>, String, State), _), _> =
+            postcard::take_from_bytes(checkpoint);
+        let ((given, laws, case, state), rest) = read.map_err(|error| wrong(&error.to_string()))?;
         if !rest.is_empty() {
             return Err(wrong(&format!("{} bytes follow its end", rest.len())));
         }
-        if given != self.given {
-            let was = given.join(", ");
-            let is = self.given.join(", ");
-            return Err(CaseError::new_err(format!(
-                "the checkpoint was made with other functions: {was}, and this simulation has: {is}\n\
-                 try: give the same functions again, or start from the beginning"
-            )));
+        for (what, was, is) in [("functions", given, &self.given), ("laws", laws, &self.laws)] {
+            if was != *is {
+                let named =
+                    |names: &[String]| if names.is_empty() { "none".into() } else { names.join(", ") };
+                let was = named(&was);
+                let is = named(is);
+                return Err(CaseError::new_err(format!(
+                    "the checkpoint was made with other {what}: {was}, and this simulation has: {is}\n\
+                     try: give the same {what} again, or start from the beginning"
+                )));
+            }
         }
         let case: Json = serde_json::from_str(&case).map_err(|error| wrong(&error.to_string()))?;
         if let Some((key, was, is)) = difference("", &case, &self.resolved()) {

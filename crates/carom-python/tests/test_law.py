@@ -99,3 +99,32 @@ def test_exceptions_of_a_law_are_raised() -> None:
             pass
     with pytest.raises(AttributeError):
         carom.Simulation(bar(), laws={"m": object()})
+
+
+def test_rows_and_checkpoints_of_plane_stress() -> None:
+    """The thickness follows from the law, which rows ask for on other threads."""
+    plate = bar(
+        dimension=2,
+        plane="stress",
+        body=[
+            {
+                "name": "bar",
+                "material": "m",
+                "element": "Q4",
+                "mesh": {"shape": "rectangle", "min": [0.0, 0.0], "max": [1.0, 1.0], "cells": [2, 2]},
+            }
+        ],
+        support=[
+            {"on": ["bar.left"], "fix": ["x"]},
+            {"on": ["bar.bottom"], "fix": ["y"]},
+            {"name": "grip", "on": ["bar.right"], "move": {"x": "0.1*t"}},
+        ],
+        time={"end": 0.2, "step": 0.1, "scheme": {"kind": "static"}},
+    )
+    simulation = carom.Simulation(plate, threads=2, laws={"m": Damage(0.5, 1.0, 10.0)})
+    given = carom.Simulation(plate, threads=2)
+    for _, _ in zip(simulation, given):
+        assert simulation.row["grip.reaction_x"] == pytest.approx(given.row["grip.reaction_x"], rel=1e-9)
+        assert simulation.row["min_det_f"] == pytest.approx(given.row["min_det_f"], rel=1e-9)
+    with pytest.raises(carom.CaseError, match="other laws: m"):
+        given.restore(simulation.checkpoint())

@@ -82,12 +82,12 @@ impl NodeToObstacle {
         Self { own: Some(own), ..self }
     }
 
-    /// Contact of those of the nodes that are listed, each with the depth that it may have without
+    /// Contact of those of the nodes that are listed in order, each with the depth that it may have without
     /// contact.
     #[must_use]
     pub fn of_nodes(&self, nodes: &NodesWithDepth) -> Self {
         let of_all = |(place, &node): (usize, &usize)| {
-            let listed = nodes.nodes.iter().position(|&other| other == node)?;
+            let listed = nodes.nodes.binary_search(&node).ok()?;
             Some((place, nodes.depths[listed]))
         };
         let found: Vec<(usize, f64)> = self.secondary.iter().enumerate().filter_map(of_all).collect();

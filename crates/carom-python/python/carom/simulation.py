@@ -61,7 +61,7 @@ class Simulation:
         that is stored, the one that is dissipated in the step, the first Piola–Kirchhoff stress of
         shape (3, 3), its derivative by F of shape (3, 3, 3, 3), and the memory at the end of the
         step. P is the derivative of the sum of both energies by F, and everything depends on
-        ``F.T @ F`` alone. It is called for each point and evaluation, some ten microseconds each.
+        ``F.T @ F`` alone. It is called for each point and evaluation, some fifty microseconds each.
 
     Examples
     --------

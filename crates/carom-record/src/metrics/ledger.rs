@@ -80,11 +80,15 @@ pub(super) fn by_flow(given: &Given) -> Option<f64> {
     share(given, "plastic_work").map(|work| 0.0 - work)
 }
 
-/// Largest equivalent plastic strain at the end; none of elastic bodies.
+/// Largest equivalent plastic strain at the end over the quadrature points; none of elastic bodies.
 pub(super) fn permanent_set(given: &Given) -> Option<f64> {
     let names = given.history.columns.iter().map(|column| column.name.as_str());
-    let strains = names.filter(|name| name.ends_with(".plastic_strain"));
-    strains.filter_map(|name| given.last(name)).reduce(f64::max)
+    // Bodies have plastic work, too; probes lie between quadrature points.
+    let is_of_body = |name: &&str| {
+        let body = name.strip_suffix(".plastic_strain");
+        body.is_some_and(|body| given.history.column(&format!("{body}.plastic_work")).is_some())
+    };
+    names.filter(is_of_body).filter_map(|name| given.last(name)).reduce(f64::max)
 }
 
 pub(super) fn by_contact(given: &Given) -> Option<f64> {

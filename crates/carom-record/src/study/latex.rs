@@ -8,7 +8,7 @@ use super::digits::short;
 use super::ranking::{Ranked, Ranking};
 
 /// Signs that LaTeX gives a meaning, and letters that are not in its fonts.
-const SIGNS: [(char, &str); 14] = [
+const SIGNS: [(char, &str); 24] = [
     ('\\', "\\textbackslash{}"),
     ('&', "\\&"),
     ('%', "\\%"),
@@ -17,6 +17,16 @@ const SIGNS: [(char, &str); 14] = [
     ('_', "\\_"),
     ('{', "\\{"),
     ('}', "\\}"),
+    ('^', "\\textasciicircum{}"),
+    ('~', "\\textasciitilde{}"),
+    ('−', "$-$"),
+    ('×', "$\\times$"),
+    ('≤', "$\\le$"),
+    ('²', "$^2$"),
+    ('μ', "$\\mu$"),
+    ('β', "$\\beta$"),
+    ('γ', "$\\gamma$"),
+    ('λ', "$\\lambda$"),
     ('ρ', "$\\rho$"),
     ('∞', "$_\\infty$"),
     ('α', "$\\alpha$"),

@@ -1,5 +1,5 @@
-//! Stress, strain and plastic strain of materials with memory between quadrature points, where
-//! nothing is remembered. In each cell they are the polynomial that is nearest to the values at the
+//! Stress and plastic strain of materials with memory between quadrature points, where nothing is
+//! remembered. (Strain follows from positions alone.) In each cell they are the polynomial that is nearest to the values at the
 //! quadrature points, with the least sum of squares: of degree k − 1 for shape functions of degree
 //! k, which is that of the strain, but at least 1, and not more than the points determine. The
 //! projection is exact for fields of this degree.
@@ -48,13 +48,11 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let nearest = past.part(nearest(points, xi), law.memory());
         let mut state = self.point_of(law, cell, xi, y, &nearest)?;
         state.cauchy = [[0.0; 3]; 3];
-        state.strain = [[0.0; 3]; 3];
         state.plastic_strain = 0.0;
         state.yielded = 0.0;
         let weights = weights(points, xi, (S::DEGREE - 1).max(1));
         for (of_point, weight) in states.iter().zip(weights) {
             add(&mut state.cauchy, weight, &of_point.cauchy);
-            add(&mut state.strain, weight, &of_point.strain);
             state.plastic_strain += weight * of_point.plastic_strain;
             state.yielded += of_point.yielded / states.len() as f64;
         }

@@ -79,6 +79,9 @@ impl Mortar {
                 side.gap.gradient(0.0, |p, slope| of_jump[p] += slope * (sign * side.area));
             }
         }
+        if jumps == [0.0; 2] {
+            return None;
+        }
         let facet = primary.surface.facet(at.facet);
         let end = End { at: facet.at(y, at.eta), shape: &facet.shape.at(at.eta), nodes: facet.nodes.len() };
         let border = Border::new(&own.at(y, at.xi), &end, jumps, of_jump)?;
