@@ -149,9 +149,9 @@ pub enum Quadrature {
     /// On each part of a secondary facet that faces a single facet of the primary.
     #[default]
     Segments,
-    /// Fixed points of the secondary facets, k + 2 on each quarter of a facet of degree k. A uniform
-    /// pressure passes meshes that do not match to 1e-4 … 5e-3 of it; at the ends of the primary
-    /// points come and go.
+    /// Fixed points of the secondary facets, k + 2 on each quarter of a facet of degree k. A
+    /// uniform pressure passes meshes that do not match to 1e-4 … 5e-3 of it; at the ends of the
+    /// primary points come and go.
     Fixed,
 }
 

@@ -82,8 +82,8 @@ impl NodeToObstacle {
         Self { own: Some(own), ..self }
     }
 
-    /// Contact of those of the nodes that are listed in order, each with the depth that it may have without
-    /// contact.
+    /// Contact of those of the nodes that are listed in order, each with the depth that it may have
+    /// without contact.
     #[must_use]
     pub fn of_nodes(&self, nodes: &NodesWithDepth) -> Self {
         let of_all = |(place, &node): (usize, &usize)| {

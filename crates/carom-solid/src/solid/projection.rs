@@ -1,8 +1,8 @@
 //! Stress and plastic strain of materials with memory between quadrature points, where nothing is
-//! remembered. (Strain follows from positions alone.) In each cell they are the polynomial that is nearest to the values at the
-//! quadrature points, with the least sum of squares: of degree k − 1 for shape functions of degree
-//! k, which is that of the strain, but at least 1, and not more than the points determine. The
-//! projection is exact for fields of this degree.
+//! remembered. (Strain follows from positions alone.) In each cell they are the polynomial that is
+//! nearest to the values at the quadrature points, with the least sum of squares: of degree k − 1
+//! for shape functions of degree k, which is that of the strain, but at least 1, and not more than
+//! the points determine. The projection is exact for fields of this degree.
 
 use carom_algebra::Vector;
 
