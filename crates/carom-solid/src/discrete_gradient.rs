@@ -147,7 +147,7 @@ struct Path<const D: usize, P> {
     ends: [Mat<D>; 2],
     /// The law at E_m.
     middle: AtStrain<D, P>,
-    /// Its smooth part, of a law that yields.
+    /// The smooth part of the potential, of a law that yields.
     unevolved: Option<AtStrain<D, P>>,
     /// F_m.
     f: Mat<D>,

@@ -5,7 +5,7 @@ use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
 
-/// What a goal compares: a test of the name of a column, and what is missing without one.
+/// Columns that a goal compares: a test of the name of a column, and what is missing without one.
 struct Compared {
     is_column: fn(&str) -> bool,
     missing: &'static str,
@@ -16,7 +16,7 @@ fn quantity(column: &str) -> &str {
     column.rsplit('.').next().unwrap_or_default()
 }
 
-/// What a goal compares; none if every record has it.
+/// The columns that a goal compares; none if every record has it.
 fn compared(goal: Goal) -> Option<Compared> {
     let of = |is_column, missing, help| Some(Compared { is_column, missing, help });
     match goal {

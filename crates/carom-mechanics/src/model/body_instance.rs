@@ -21,7 +21,7 @@ pub struct BodyInstance {
     pub point_mass: f64,
     /// Global dofs of its cells, cell after cell.
     dofs: Vec<u32>,
-    /// Its boundary, found on the first query.
+    /// Boundary of the body, found on the first query.
     skin: OnceLock<Vec<Facet>>,
 }
 
@@ -54,7 +54,7 @@ impl BodyInstance {
         self.point_mass == 0.0 && cells.into_iter().all(|cell| self.body.density(cell) == 0.0)
     }
 
-    /// Its whole boundary, [`Mesh::skin`](carom_solid::Mesh::skin).
+    /// The whole boundary of the body, [`Mesh::skin`](carom_solid::Mesh::skin).
     pub fn skin(&self) -> &[Facet] {
         self.skin.get_or_init(|| self.body.mesh().skin())
     }

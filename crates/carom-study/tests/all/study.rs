@@ -466,7 +466,7 @@ fn an_arm_matches_cost_where_the_others_match_steps() {
     assert!(out.join("pilots/03-explicit-cost-of-dt-1e-2/pilot.json").is_file());
 }
 
-/// What a goal compares must be recorded.
+/// A goal whose columns are not recorded is refused.
 #[test]
 fn goals_without_what_they_compare_are_reported() {
     let first = |study: &str| wrong(&format!("{study}[[arm]]\nname = \"a\"\n"))[0].clone();

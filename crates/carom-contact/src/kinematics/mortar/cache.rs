@@ -21,7 +21,7 @@ pub(super) struct Measured {
 #[derive(Debug, Default)]
 pub(super) struct Faced {
     pub(super) points: Vec<Measured>,
-    /// What the motion of borders adds, with the area 1.
+    /// Terms of the gradient from the motion of the ends of the primary, with the area 1.
     pub(super) borders: Vec<Measured>,
     /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,

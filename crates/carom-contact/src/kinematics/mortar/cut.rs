@@ -148,7 +148,7 @@ pub(super) struct Crossing {
     /// The facet that ends there, and its coordinate, −1 or 1.
     pub(super) facet: usize,
     pub(super) eta: f64,
-    /// What the points before and after the place face.
+    /// Closest points of the primary for the secondary side before and after this place.
     pub(super) sides: [Option<Opposed>; 2],
 }
 

@@ -63,7 +63,7 @@ impl Mortar {
         Some(Measured { at, gap, area, turned })
     }
 
-    /// What the motion of a place at which the primary ends adds to the derivatives.
+    /// The term of the gradient from the motion of an end of the primary over a secondary facet.
     fn border(&self, own: Facet, at: &Crossing, y: Places) -> Option<Measured> {
         let Opposite::Side(primary) = &self.opposite else { return None };
         let mut jumps = [0.0; 2];
