@@ -91,13 +91,13 @@ pub(crate) fn change_between<const D: usize, L: Material<D>>(
 }
 
 /// W at a strain.
-#[inline(always)]
+#[inline(never)]
 fn energy_at<const D: usize, L: Material<D>>(law: &L, strain: &Mat<D>) -> Result<f64, NotPositive> {
     Ok(law.energy(&law.at(&root(strain)?)?))
 }
 
 /// S* at a strain, of a law without flow in the step.
-#[inline(always)]
+#[inline(never)]
 fn smooth_at<const D: usize, L: Material<D>>(
     law: &L,
     strain: &Mat<D>,
@@ -134,11 +134,21 @@ impl<const D: usize, P> AtStrain<D, P> {
     }
 
     /// ∂S/∂E : dE.
-    #[inline(always)]
+    #[inline(never)]
     fn change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Mat<D> {
         let df = self.inverse.transposed() * *de;
         self.inverse * (law.change(&self.point, &df) - df * self.stress)
     }
+}
+
+/// The law at a strain.
+#[inline(never)]
+fn law_at<const D: usize, L: Material<D>>(
+    law: &L,
+    strain: &Mat<D>,
+) -> Result<AtStrain<D, L::Point>, NotPositive> {
+    let excess = root(strain)?;
+    Ok(AtStrain::of(law, law.at(&excess)?, &excess))
 }
 
 /// The straight path between two strains.
@@ -161,7 +171,7 @@ struct Path<const D: usize, P> {
 }
 
 impl<const D: usize, P> Path<D, P> {
-    #[inline(always)]
+    #[inline(never)]
     fn new<L: Material<D, Point = P>>(law: &L, h: [&Mat<D>; 2]) -> Result<Self, NotPositive> {
         for h in h {
             // Strains do not tell a reflection.
@@ -176,8 +186,7 @@ impl<const D: usize, P> Path<D, P> {
         let change = symmetric(&(f.transposed() * (*h[1] - *h[0])));
         let square = change.double_dot(&change);
         let corrected = square > f64::EPSILON * middle_strain.double_dot(&middle_strain);
-        let excess = root(&middle_strain)?;
-        let middle = AtStrain::of(law, law.at(&excess)?, &excess);
+        let middle = law_at(law, &middle_strain)?;
         let unevolved = law.unevolved(&middle.point).map(|point| middle.replaced(law, point));
         Ok(Self { ends, middle, unevolved, f, change, square, corrected })
     }
@@ -236,7 +245,7 @@ impl<const D: usize, P> Path<D, P> {
     }
 
     /// φ.
-    #[inline(always)]
+    #[inline(never)]
     fn phi<L: Material<D, Point = P>>(&self, law: &L, end: &P) -> Result<f64, NotPositive> {
         if !self.corrected {
             return Ok(0.0);
@@ -260,12 +269,7 @@ impl<const D: usize, P> Path<D, P> {
             return Ok([0.0, 0.0]);
         }
         let needs_end = L::YIELDS || self.square > GAUSS;
-        let end = if needs_end {
-            let excess = root(&self.ends[1])?;
-            Some(AtStrain::of(law, law.at(&excess)?, &excess))
-        } else {
-            None
-        };
+        let end = if needs_end { Some(law_at(law, &self.ends[1])?) } else { None };
         let [phi, excess_change] = match end {
             Some(end) if self.by_difference(law, &end.point) => {
                 let phi = self.phi(law, &end.point)?;

@@ -190,6 +190,10 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     }
 
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {
+        // Nothing that follows is compiled for a law without memory.
+        if const { L::MEMORY == 0 } {
+            return Ok(());
+        }
         wide(
             #[inline(always)]
             || {

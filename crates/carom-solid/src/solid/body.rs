@@ -113,9 +113,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
 impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     fn respond(&self, first: usize, at: &Configuration, ask: Ask, out: Response) -> Result<(), Inverted> {
         let Response { numbers, energies, memory, dissipated } = out;
-        if let (Ask::Force, None) = (ask, at.before)
-            && Self::HAS_CONSTANT_STRAIN
+        if const { Self::HAS_CONSTANT_STRAIN }
             && self.memory == 0
+            && let (Ask::Force, None) = (ask, at.before)
         {
             return self.constant_forces(first, at.y, numbers, energies);
         }
@@ -158,7 +158,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     }
 
     fn min_det_f(&self, cells: Range<usize>, y: &[f64], past: &Past) -> f64 {
-        if Self::HAS_CONSTANT_STRAIN && self.memory == 0 && cells.start.is_multiple_of(LANES) {
+        if const { Self::HAS_CONSTANT_STRAIN } && self.memory == 0 && cells.start.is_multiple_of(LANES) {
             return self.constant_min_det_f(cells, y);
         }
         cells.map(|cell| self.cell_min_det_f(cell, y, past)).fold(f64::INFINITY, f64::min)
@@ -183,7 +183,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         for (block, margins) in margins.chunks_mut(LANES).enumerate() {
             let first = first + block * LANES;
             let certifies = |k: usize| !self.may_invert(first + k);
-            if Self::HAS_CONSTANT_STRAIN
+            if const { Self::HAS_CONSTANT_STRAIN }
                 && (0..margins.len()).all(certifies)
                 && self.constant_margins(first, y, margins)
             {
@@ -213,7 +213,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
                 }
                 None => self.point_of(&**law, cell, xi, y, &Past::default())?,
             };
-            if let Some(mean) = mean {
+            if const { Self::MAY_AVERAGE }
+                && let Some(mean) = mean
+            {
                 self.add_mean_stress(mean, cell, xi, y, &mut state)?;
             }
             Ok(state)
@@ -258,7 +260,9 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             };
             Energies { stored, dissipated: 0.0 }
         };
-        if let Some(mean) = mean {
+        if const { Self::MAY_AVERAGE }
+            && let Some(mean) = mean
+        {
             energies.stored += self.add_mean(mean, cell, at, ask, numbers)?;
         }
         Ok(energies)
@@ -283,10 +287,12 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Force of a cell; returns its energy.
     pub(super) fn force(&self, cell: usize, y: &[f64], force: &mut [f64]) -> Result<f64, Inverted> {
         let Medium { law, mean, .. } = self.medium(cell);
-        match mean {
-            None => self.force_of(&**law, cell, y, force),
-            Some(mean) => self.mean_force(&**law, mean, cell, y, force),
+        if const { Self::MAY_AVERAGE }
+            && let Some(mean) = mean
+        {
+            return self.mean_force(&**law, mean, cell, y, force);
         }
+        self.force_of(&**law, cell, y, force)
     }
 
     /// Margin of one cell.

@@ -22,7 +22,7 @@ use super::{Place, Solid};
 use crate::body::{Ask, Configuration, Inverted, PointState};
 use crate::material::{Mean, NotPositive, Past, Pointwise};
 use crate::points::{LANES, sum};
-use crate::shape::Shape;
+use crate::shape::{Domain, Shape};
 
 /// Blocks of quadrature points of a cell: eight points of Hex8, the largest that has this.
 const BLOCKS: usize = 2;
@@ -34,6 +34,10 @@ struct Swelling {
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
+    /// Whether a body of this shape may have a mean dilatation: Q4 and Hex8 (`factory.rs`). For
+    /// others none of this is compiled.
+    pub(super) const MAY_AVERAGE: bool = D > 1 && S::DEGREE == 1 && S::Domain::TENSOR;
+
     /// Volume of a cell (× thickness) by the rule of the forces.
     fn volume(&self, cell: usize) -> f64 {
         let place = &self.places[cell];
