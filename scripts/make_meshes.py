@@ -245,33 +245,42 @@ def thin():
 # cases/tie
 
 
-def tied_rings():
-    """Quarters of two concentric rings of radii 20, 50 and 100, with 8 and 12 cells along the arc and
-    no common nodes. Surfaces `shaft` and `hub`; curves `inner`, `bond` and `bottom`, `left` of the
-    first, `seat`, `outer` and `low`, `side` of the second."""
+class Ring(NamedTuple):
+    """A quarter of a ring: its radii, cells along the arc and across it."""
+
+    radii: tuple
+    along: int
+    across: int
+
+
+def quarter_rings(shaft, hub):
+    """Quarters of two concentric rings that have no common nodes. Surfaces `shaft` and `hub`; curves
+    `inner`, `bond` and `bottom`, `left` of the first, `seat`, `outer` and `low`, `side` of the second."""
     mesh = Mesh()
 
-    def ring(radii, along, across):
+    def grid(ring):
+        first, last = ring.radii
+
         def place(a, b):
-            angle = 0.5 * pi * a / along
-            radius = radii[0] + (radii[1] - radii[0]) * b / across
-            if a == along:
+            angle = 0.5 * pi * a / ring.along
+            radius = first + (last - first) * b / ring.across
+            if a == ring.along:
                 return (0.0, radius)
             return (radius * cos(angle), radius * sin(angle))
 
         return Grid(mesh, place)
 
-    shaft, hub = ring((20.0, 50.0), 8, 4), ring((50.0, 100.0), 12, 5)
-    mesh.add(2, "shaft", shaft.triangles(columns(8, 4), CLOCKWISE))
-    mesh.add(2, "hub", hub.triangles(columns(12, 5), CLOCKWISE))
-    for grid, along, across, names in (
-        (shaft, 16, 8, ("inner", "bond", "bottom", "left")),
-        (hub, 24, 10, ("seat", "outer", "low", "side")),
-    ):
-        mesh.add(1, names[0], grid.line((a, 0) for a in range(along + 1)))
-        mesh.add(1, names[1], grid.line((a, across) for a in range(along + 1)))
-        mesh.add(1, names[2], grid.line((0, b) for b in range(across + 1)))
-        mesh.add(1, names[3], grid.line((along, b) for b in range(across + 1)))
+    rings = (shaft, hub)
+    grids = [grid(ring) for ring in rings]
+    for name, ring, of in zip(("shaft", "hub"), rings, grids):
+        mesh.add(2, name, of.triangles(columns(ring.along, ring.across), CLOCKWISE))
+    sides = (("inner", "bond", "bottom", "left"), ("seat", "outer", "low", "side"))
+    for ring, of, names in zip(rings, grids, sides):
+        along, across = 2 * ring.along, 2 * ring.across
+        mesh.add(1, names[0], of.line((a, 0) for a in range(along + 1)))
+        mesh.add(1, names[1], of.line((a, across) for a in range(along + 1)))
+        mesh.add(1, names[2], of.line((0, b) for b in range(across + 1)))
+        mesh.add(1, names[3], of.line((along, b) for b in range(across + 1)))
     return mesh.file()
 
 
@@ -875,7 +884,8 @@ def recipes(carom):
         "cases/self/strips.msh": strips,
         "cases/self/slit.msh": lambda: strip(slit=True),
         "cases/self/solid.msh": lambda: strip(slit=False),
-        "cases/tie/rings.msh": tied_rings,
+        "cases/mortar/rings.msh": lambda: quarter_rings(Ring((1.0, 1.5), 6, 50), Ring((1.5, 2.0), 8, 60)),
+        "cases/tie/rings.msh": lambda: quarter_rings(Ring((20.0, 50.0), 8, 4), Ring((50.0, 100.0), 12, 5)),
         "cases/tie/cut-ring.msh": cut_ring,
         "cases/tie/slit.msh": lambda: strip(slit=True, named=True),
         "cases/self/pinched.msh": pinched,

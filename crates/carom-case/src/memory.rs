@@ -124,7 +124,10 @@ impl Case {
                 history_columns(self).len()
             );
             let key = if self.output.history_every > 1 { "output.history_every" } else { "time.step" };
-            let help = "give output.history_every, the steps between two rows, or a longer step";
+            let steps = self.time.steps();
+            let help = format!(
+                "give output.history_every, the steps between two rows, a longer step or an earlier end: end / step is {steps}"
+            );
             return Err(Problem::new(key, what, why, help).of_system());
         }
         let solver = self.solver();

@@ -34,7 +34,7 @@ mod table;
 pub use crate::facts::Overlay;
 pub use crate::units::Unit;
 pub use averaged::of_averages;
-pub use book::book_table;
+pub use book::{Explanation, book_table, explained};
 pub use compare::{deviation, phase_shift};
 pub use cost::{KERNELS, Kernel, cost};
 pub use definition::Metric;

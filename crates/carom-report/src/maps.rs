@@ -56,8 +56,8 @@ fn sides(run: &Recorded, chosen: impl Fn(&ContactRow, &Place) -> bool) -> Vec<Si
 enum Colours {
     /// Ranges of the pressure, and whether values lie outside.
     Pressure(Bands, [bool; 2]),
-    /// States in words.
-    States([&'static str; 3]),
+    /// States in words; whether slip along the tangent comes first.
+    States([&'static str; 3], bool),
 }
 
 /// Colours of sticking, and of slip against and along the tangent. The tangent is the outward
@@ -69,18 +69,21 @@ impl Colours {
     fn of(&self, row: &ContactRow) -> usize {
         match self {
             Self::Pressure(bands, _) => bands.of(row.pressure),
-            Self::States(_) => match (row.friction.as_ref(), row.traction >= 0.0) {
-                ("slip", true) => 1,
-                ("slip", false) => 2,
-                _ => 0,
-            },
+            Self::States(_, flipped) if row.friction == "slip" => {
+                if (row.traction >= 0.0) == *flipped {
+                    2
+                } else {
+                    1
+                }
+            }
+            Self::States(..) => 0,
         }
     }
 
     fn all(&self) -> Vec<String> {
         match self {
             Self::Pressure(bands, _) => (0..bands.count).map(|band| bands.color(band)).collect(),
-            Self::States(_) => STATES.map(str::to_owned).into(),
+            Self::States(..) => STATES.map(str::to_owned).into(),
         }
     }
 }
@@ -125,9 +128,15 @@ pub(crate) fn pressure(run: &Recorded) -> Option<Figure> {
 
 /// The map of the friction.
 pub(crate) fn stick_slip(run: &Recorded) -> Option<Figure> {
-    let sides = sides(run, |row, _| row.friction != "none");
+    // A row without traction has no direction of slip.
+    let has_state =
+        |row: &ContactRow| row.friction == "stick" || row.friction == "slip" && row.traction != 0.0;
+    let sides = sides(run, |row, place| place.is_secondary && has_state(row));
     let words = directions(run, &sides);
     let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
+    // One direction has one colour, whichever side lies above.
+    let flipped = against.contains('+');
+    let states = if flipped { ["sticks", along, against] } else { ["sticks", against, along] };
     let mut table = String::from("contact,node,s,time,state,traction\n");
     for (side, (row, place)) in sides.iter().flat_map(|side| side.rows.iter().map(move |row| (side, row))) {
         let node = row.node;
@@ -142,7 +151,7 @@ pub(crate) fn stick_slip(run: &Recorded) -> Option<Figure> {
         name: "stick-slip",
         length: fields.unit("displacement").to_owned(),
         stress: String::new(),
-        sides: sides.into_iter().map(|side| (side, Colours::States(["sticks", against, along]))).collect(),
+        sides: sides.into_iter().map(|side| (side, Colours::States(states, flipped))).collect(),
     };
     let forward =
         if words.is_some() { "" } else { "; forward: along the normal of the primary side turned clockwise" };
@@ -206,8 +215,13 @@ impl Maps<'_> {
         let count = self.sides.len() as f64;
         let mut out = opened("chart", self.title, width, head + count * STEP + 30.0);
         let shown: Vec<f64> = self.run.times().iter().copied().filter(|t| (from..=to).contains(t)).collect();
-        let kept: Vec<f64> = shown.iter().copied().step_by(shown.len().div_ceil(INSTANTS).max(1)).collect();
-        if let Some((_, Colours::States(words))) = self.sides.first() {
+        let mut kept: Vec<f64> =
+            shown.iter().copied().step_by(shown.len().div_ceil(INSTANTS).max(1)).collect();
+        // The map ends where its last row does.
+        if let Some(last) = shown.last().filter(|last| kept.last() != Some(last)) {
+            kept.push(*last);
+        }
+        if let Some((_, Colours::States(words, _))) = self.sides.first() {
             key(&mut out, words, width);
         }
         let mut spans = Vec::new();

@@ -19,6 +19,8 @@
 //! gravity do not act. The run starts from the positions found, with the velocities of the case,
 //! and the energy that the bodies then store is in its first row.
 
+use std::collections::BTreeSet;
+
 use carom_case::{
     BodySpec, Case, ContactLaw, FormulaSpec, FrictionSpec, Law, MassKind, ObstacleMotion, Overlap,
     Persistency, Problem, SchemeSpec,
@@ -80,10 +82,16 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     let y = &model.initial_position;
     let d = model.dimension;
     let mut nodes = Vec::new();
+    // Behind a side, but outside its body, nothing overlaps.
+    let overlap: BTreeSet<usize> =
+        carom_mechanics::inside(model, y, CLOSED * model.scale).into_iter().map(|(k, ..)| k).collect();
     for (k, depths) in depths(model, y).iter().enumerate() {
+        let keeps = matches!(case.contacts[k].overlap, Overlap::KeepGap | Overlap::Touch);
+        if !keeps && !overlap.contains(&k) {
+            continue;
+        }
         let contact = &model.contacts[k];
         let first = nodes.len();
-        let keeps = matches!(case.contacts[k].overlap, Overlap::KeepGap | Overlap::Touch);
         for (place, &node) in contact.kinematics.secondary().iter().enumerate() {
             let kept = if keeps { contact.kinematics.kept(place) } else { 0.0 };
             let depth = depths[place] + kept;

@@ -5,6 +5,7 @@
 mod derivatives;
 mod discrete_gradient;
 mod edges;
+mod inf_sup;
 mod joints;
 mod kinks;
 mod mortar;

@@ -1,4 +1,4 @@
-//! The table of metrics for the book.
+//! The table of metrics for the book, and what each of them is.
 
 use super::definition::Definition;
 use super::evaluated::{of_any_column, of_no_column};
@@ -10,6 +10,35 @@ pub fn book_table() -> String {
     let rows = of_no_column().chain(&OVERLAY).map(|definition| row("", definition));
     rows.chain(of_any_column().map(|definition| row("COLUMN:", definition)))
         .fold(head.to_owned(), |text, row| text + &row)
+}
+
+/// What a metric is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Explanation {
+    /// Name in expectations and studies, without that of a column.
+    pub name: &'static str,
+    /// Meaning, in one line.
+    pub meaning: &'static str,
+    /// Formula in columns of the history.
+    pub formula: &'static str,
+    /// Kind of unit, in words.
+    pub unit: &'static str,
+}
+
+/// Every metric, those of columns and of measured data included.
+///
+/// ```
+/// let all: Vec<_> = carom_record::metrics::explained().collect();
+/// assert_eq!(all.iter().find(|of| of.name == "contact_duration").unwrap().formula, "t_b − t_a");
+/// ```
+pub fn explained() -> impl Iterator<Item = Explanation> {
+    let all = of_no_column().chain(&OVERLAY).chain(of_any_column());
+    all.map(|&Definition { name, unit, formula, meaning, .. }| Explanation {
+        name,
+        meaning,
+        formula,
+        unit: unit.word(),
+    })
 }
 
 fn row(before: &str, Definition { name, unit, formula, source, meaning, .. }: &Definition) -> String {

@@ -11,6 +11,7 @@ mod extent;
 mod found;
 mod masses;
 mod meshes;
+mod obstacles;
 mod record;
 mod steps;
 mod stick;
@@ -50,7 +51,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 23] = [
+pub const WARNINGS: [Entry; 24] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -64,6 +65,12 @@ pub const WARNINGS: [Entry; 23] = [
               contact surface have errors of 10 % or more",
         advice: "method = \"mortar\" in the plane, matching meshes, resultants, or probes a few cells away",
         rule: Rule::Model(meshes::unmatched_pressure),
+    },
+    Entry {
+        id: "inside-obstacle",
+        why: "only nodes on its free side are kept out of a rigid obstacle: the body moves as if it were not there",
+        advice: "the obstacle turned the other way",
+        rule: Rule::Model(obstacles::inside_obstacle),
     },
     Entry {
         id: "velocity-jump",

@@ -320,7 +320,7 @@ fn variants(path: &Path, turn: usize, at_night: bool) -> Vec<(String, Case)> {
 
 #[test]
 fn booked_works_leave_what_the_scheme_dissipates() {
-    assert!(judged_pairs("friction", false, 1e-12) > 50);
+    assert!(judged_pairs("friction", false, 1e-12) > 30);
 }
 
 /// The forces of a tie do no work. Displacements there are small: the digits of positions are fewer
@@ -342,14 +342,14 @@ fn booked_works_leave_what_every_scheme_dissipates() {
     assert!(judged_pairs("friction", true, 1e-12) > 300);
 }
 
-/// Judges the cases of a folder of `cases`, by day every other one; returns the number of pairs
+/// Judges the cases of a folder of `cases`, by day every third one; returns the number of pairs
 /// that rubbed. `round_off`: relative to the energies.
 fn judged_pairs(folder: &str, at_night: bool, round_off: f64) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases").join(folder);
     let mut cases: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     cases.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     cases.sort();
-    let cases: Vec<_> = cases.into_iter().step_by(if at_night { 1 } else { 2 }).collect();
+    let cases: Vec<_> = cases.into_iter().step_by(if at_night { 1 } else { 3 }).collect();
     let (next, rubbed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let missed = Mutex::new(Vec::new());
     let work = || {

@@ -182,7 +182,7 @@ fn moments(sim: &Simulation) -> (usize, f64) {
     (count, largest)
 }
 
-/// |Σ (y − c) × f| / Σ |y − c||f| of a row f.
+/// |Σ (y − c) × f| / Σ |y − c||f| of a row f, with arms of at least a thousandth of |y|.
 fn moment(row: Row, y: &[f64]) -> f64 {
     let d = row.dimension();
     let mut forces: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
@@ -201,7 +201,8 @@ fn moment(row: Row, y: &[f64]) -> f64 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             *moment += r[j] * f[k] - r[k] * f[j];
         }
-        scale += size(r) * size(f);
+        // Where nodes meet, their distance is round-off of their places.
+        scale += size(r).max(1e-3 * size(at)) * size(f);
     }
     size(moment) / scale
 }
@@ -403,13 +404,13 @@ fn every_case_of_the_repository() {
 }
 
 /// By day a sample: all of them take minutes.
-const BY_DAY: usize = 8;
+const BY_DAY: usize = 16;
 
 fn every_case(at_night: bool) {
     let all: Vec<_> = repository().into_iter().step_by(if at_night { 1 } else { BY_DAY }).collect();
     let all = all_seen(&all, |path| contact_case(path, at_night).map(|(case, span)| seen(&case, span)));
     let [touched, two_bodies] = checked(&all);
-    let [at_least, of_two_bodies] = if at_night { [112, 48] } else { [9, 3] };
+    let [at_least, of_two_bodies] = if at_night { [112, 48] } else { [4, 1] };
     assert!(touched > at_least && two_bodies > of_two_bodies, "{touched} {two_bodies}");
 }
 
@@ -454,7 +455,7 @@ fn every_arm(at_night: bool) {
     let all = all_seen(&arms, |case| Some(seen(case, span(case))));
     let all: Vec<_> = all.into_iter().map(|(case, seen)| (method(case), seen)).collect();
     let [touched, two_bodies] = checked(&all);
-    let [at_least, of_two_bodies] = if at_night { [135, 28] } else { [12, 1] };
+    let [at_least, of_two_bodies] = if at_night { [135, 28] } else { [6, 0] };
     assert!(touched > at_least && two_bodies > of_two_bodies, "{touched} {two_bodies}");
 }
 

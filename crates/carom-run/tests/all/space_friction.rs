@@ -342,7 +342,7 @@ newton = {{ tolerance = 1e-12 }}
 #[test]
 fn every_node_of_a_spinning_ball_has_the_force_of_slip() {
     let text = include_str!("../../../../cases/space/spinning-ball.toml");
-    let mut sim = simulation(text, &["time.end=0.06", "newton.tolerance=1e-13"]);
+    let mut sim = simulation(text, &["time.end=0.04", "newton.tolerance=1e-13"]);
     let mut slips = 0;
     while !sim.finished() {
         sim.advance(&mut GridReport::default()).unwrap();
@@ -355,5 +355,5 @@ fn every_node_of_a_spinning_ball_has_the_force_of_slip() {
             slips += 1;
         }
     }
-    assert!(slips > 50, "{slips}");
+    assert!(slips > 25, "{slips}");
 }

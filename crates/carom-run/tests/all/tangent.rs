@@ -58,14 +58,14 @@ fn forces(sim: &mut Simulation, steps: usize) -> Vec<[f64; 3]> {
 #[test]
 fn factors_of_single_precision_lead_to_the_same_history_and_are_made_again() {
     let mut sim = large("newton.tangent=frozen");
-    let mut single = forces(&mut sim, 14);
+    let mut single = forces(&mut sim, 10);
     let mut resumed = large("newton.tangent=frozen");
     resumed.restore(sim.state().clone()).unwrap();
-    let last = forces(&mut sim, 6);
-    assert_eq!(forces(&mut resumed, 6), last);
+    let last = forces(&mut sim, 4);
+    assert_eq!(forces(&mut resumed, 4), last);
     assert_eq!(resumed.state(), sim.state());
     single.extend(last);
-    let double = forces(&mut large("newton.tangent=frozen-double"), 20);
+    let double = forces(&mut large("newton.tangent=frozen-double"), 14);
     let largest = double.iter().map(|f| f[1].abs()).fold(0.0, f64::max);
     assert!(largest > 1.0, "{largest}");
     // Not bitwise equal: one of the two is of single precision.

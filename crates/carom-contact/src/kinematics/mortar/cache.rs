@@ -1,6 +1,6 @@
 //! Quadrature points and gaps of the secondary facets at one configuration.
 
-use super::cut::Opposed;
+use super::cut::{Opposed, Region};
 use super::multipliers::MOST;
 use super::opposite::PointGap;
 use super::turned::Turned;
@@ -20,19 +20,25 @@ pub(super) struct Measured {
 /// A secondary facet at one configuration.
 #[derive(Debug, Default)]
 pub(super) struct Faced {
+    /// Whether its points have been found.
+    pub(super) is_measured: bool,
     pub(super) points: Vec<Measured>,
     /// Terms of the gradient from the motion of the ends of the primary, with the area 1.
     pub(super) borders: Vec<Measured>,
     /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,
-    /// For each polynomial the one whose multiplier carries it.
-    pub(super) carriers: [usize; MOST],
+    /// For each polynomial the one whose multiplier carries it, once it is known.
+    pub(super) carriers: Option<[usize; MOST]>,
 }
 
-/// The facets at one configuration.
+/// The facets at one configuration, measured when they are first asked for: few are near the other
+/// side.
 #[derive(Debug, Default)]
 pub(super) struct Cache {
     /// Positions of the nodes of both sides.
     pub(super) places: Vec<f64>,
+    /// Facets of the primary with their regions.
+    pub(super) regions: Vec<(usize, Region)>,
+    /// The facets of the secondary side.
     pub(super) of_facets: Vec<Faced>,
 }

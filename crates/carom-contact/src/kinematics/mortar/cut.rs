@@ -200,7 +200,7 @@ impl Rule {
 /// A primary side in one configuration, with the regions of those of its facets that count.
 pub(super) struct Opposites<'a> {
     pub(super) surface: &'a Surface,
-    pub(super) regions: Vec<(usize, Region)>,
+    pub(super) regions: &'a [(usize, Region)],
     pub(super) y: Places<'a>,
 }
 
@@ -223,7 +223,7 @@ impl Opposites<'_> {
     fn facing_in_parts(&self, own: Facet, rule: &[[f64; 2]]) -> Facing {
         let mut parts = Vec::new();
         let normal = own.at(self.y, 0.0).normal;
-        for (facet, region) in &self.regions {
+        for (facet, region) in self.regions {
             if let Some(ends) = region.part_of(own, normal, self.y) {
                 parts.push(Part { ends, facet: *facet, region });
             }

@@ -10,7 +10,8 @@
 
 use std::collections::BTreeMap;
 
-use super::multipliers::{MOST, bernstein};
+use super::cache::Faced;
+use super::multipliers::{MOST, Part, bernstein};
 use super::sides::Mortar;
 use crate::kinematics::NodalPressure;
 use crate::pair::Pair;
@@ -30,8 +31,10 @@ impl Mortar {
             }
         }
         let facets = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
+        let all: Vec<Part> = self.multipliers.iter().flat_map(|of| of.parts.iter().copied()).collect();
+        let carried = |of: &Faced| (of.ends, of.carriers.unwrap_or_default());
         let faced: Vec<(Option<[f64; 2]>, [usize; MOST])> =
-            self.at(y, |of_facets| of_facets.iter().map(|of| (of.ends, of.carriers)).collect());
+            self.at(y, &all, |of_facets| of_facets.iter().map(carried).collect());
         let mut at_nodes: BTreeMap<usize, Vec<NodalPressure>> = BTreeMap::new();
         for facet in facets {
             let own = self.secondary.facet(facet);

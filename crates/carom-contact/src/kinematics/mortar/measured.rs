@@ -10,9 +10,9 @@ use std::sync::PoisonError;
 use carom_algebra::Vector;
 
 use super::border::{self, Border, End};
-use super::cache::{Faced, Measured};
-use super::cut::{Crossing, Facing, Opposed};
-use super::multipliers::{MOST, Part, bernstein};
+use super::cache::{Cache, Faced, Measured};
+use super::cut::{Crossing, Facing, Opposed, Region};
+use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
 use super::sides::Mortar;
 use super::turned::{Own, Turned};
@@ -23,36 +23,46 @@ use crate::places::Places;
 const COVERED: f64 = 0.05;
 
 impl Mortar {
-    /// Calls a function with the secondary facets at positions `y`.
-    pub(super) fn at<T>(&self, y: Places, of: impl FnOnce(&[Faced]) -> T) -> T {
+    /// Calls a function with the secondary facets at positions `y`, of which those of some parts
+    /// have been measured.
+    pub(super) fn at<T>(&self, y: Places, parts: &[Part], of: impl FnOnce(&[Faced]) -> T) -> T {
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let places = || self.surface.iter().flat_map(|&node| y.coordinates(node)).copied();
         if cache.places.is_empty() || !cache.places.iter().copied().eq(places()) {
-            cache.of_facets = self.measure_facets(y);
+            cache.regions = self.opposite.regions(self.opposite.facets(), y);
+            cache.of_facets.clear();
+            cache.of_facets.resize_with(self.secondary.facets(), Faced::default);
             cache.places.clear();
             cache.places.extend(places());
         }
-        of(&cache.of_facets)
+        let Cache { regions, of_facets, .. } = &mut *cache;
+        for part in parts {
+            self.measure_facet(part.facet, regions, of_facets, y);
+        }
+        of(of_facets)
     }
 
-    fn measure_facets(&self, y: Places) -> Vec<Faced> {
-        let facing = self.opposite.facing(self.opposite.facets(), &self.rule, y);
-        let mut faced: Vec<Faced> = Vec::new();
-        for facet in 0..self.secondary.facets() {
-            if !self.used[facet] {
-                faced.push(Faced::default());
+    /// Measures a facet, and those on which its carriers depend.
+    fn measure_facet(&self, facet: usize, regions: &[(usize, Region)], faced: &mut [Faced], y: Places) {
+        if faced[facet].carriers.is_some() {
+            return;
+        }
+        let facing = self.opposite.facing(regions, &self.rule, y);
+        let of_facet = &self.of_facets[facet][..=self.degree];
+        for part in of_facet.iter().flat_map(|&multiplier| &self.multipliers[multiplier].parts) {
+            let of = &mut faced[part.facet];
+            if of.is_measured {
                 continue;
             }
-            let own = self.secondary.facet(facet);
+            let own = self.secondary.facet(part.facet);
             let Facing { points, ends, borders } = facing(own);
-            let borders = borders.iter().filter_map(|at| self.border(own, at, y)).collect();
+            of.borders = borders.iter().filter_map(|at| self.border(own, at, y)).collect();
             let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
-            let points = measured.filter(|point| point.area > 0.0).collect();
-            faced.push(Faced { points, borders, ends, carriers: [0; MOST] });
+            of.points = measured.filter(|point| point.area > 0.0).collect();
+            of.ends = ends;
+            of.is_measured = true;
         }
-        let carriers = self.carriers(&faced);
-        faced.iter_mut().zip(carriers).for_each(|(faced, carriers)| faced.carriers = carriers);
-        faced
+        faced[facet].carriers = Some(self.carriers(of_facet, faced));
     }
 
     fn measured(&self, own: Facet, at: Opposed, y: Places) -> Option<Measured> {
@@ -89,33 +99,35 @@ impl Mortar {
         Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None })
     }
 
-    /// For each facet and polynomial the polynomial that carries it: itself, if enough of its
-    /// multiplier is covered, or else the nearest one on the facet of which that holds, or the one
-    /// that is covered most.
-    fn carriers(&self, faced: &[Faced]) -> Vec<[usize; MOST]> {
-        let mut carriers = vec![std::array::from_fn(|number| number); faced.len()];
+    /// For each polynomial of a facet, with its multipliers, the polynomial that carries it:
+    /// itself, if enough of its multiplier is covered, or else the nearest one on the facet of
+    /// which that holds, or the one that is covered most.
+    fn carriers(&self, of_facet: &[usize], faced: &[Faced]) -> [usize; MOST] {
+        let mut carriers = std::array::from_fn(|number| number);
         if self.springs {
             return carriers;
         }
-        let mut covers = vec![[0.0; MOST]; faced.len()];
-        for multiplier in &self.multipliers {
-            let of_part = |part: &Part| -> f64 {
-                let value = |point: &Measured| bernstein(self.degree, part.polynomial, point.at.xi);
-                faced[part.facet].points.iter().map(|point| value(point) * point.area).sum()
-            };
-            let cover = multiplier.parts.iter().map(of_part).sum::<f64>() / multiplier.area;
-            multiplier.parts.iter().for_each(|part| covers[part.facet][part.polynomial] = cover);
+        let mut covers = [0.0; MOST];
+        for (cover, &multiplier) in covers.iter_mut().zip(of_facet) {
+            *cover = self.cover(&self.multipliers[multiplier], faced);
         }
-        for (covers, carriers) in covers.iter().zip(&mut carriers) {
-            let is_covered = |number: usize| covers[number] >= COVERED;
-            let all = 0..=self.degree;
-            for number in all.clone().filter(|&number| !is_covered(number)) {
-                let nearest = all.clone().filter(|&other| is_covered(other));
-                let most = all.clone().max_by(|&a, &b| covers[a].total_cmp(&covers[b]));
-                let carrier = nearest.min_by_key(|other| other.abs_diff(number)).or(most);
-                carriers[number] = carrier.unwrap_or(number);
-            }
+        let is_covered = |number: usize| covers[number] >= COVERED;
+        let all = 0..of_facet.len();
+        for number in all.clone().filter(|&number| !is_covered(number)) {
+            let nearest = all.clone().filter(|&other| is_covered(other));
+            let most = all.clone().max_by(|&a, &b| covers[a].total_cmp(&covers[b]));
+            let carrier = nearest.min_by_key(|other| other.abs_diff(number)).or(most);
+            carriers[number] = carrier.unwrap_or(number);
         }
         carriers
+    }
+
+    /// Share of the area of a multiplier that faces the primary.
+    fn cover(&self, multiplier: &Multiplier, faced: &[Faced]) -> f64 {
+        let of_part = |part: &Part| -> f64 {
+            let value = |point: &Measured| bernstein(self.degree, part.polynomial, point.at.xi);
+            faced[part.facet].points.iter().map(|point| value(point) * point.area).sum()
+        };
+        multiplier.parts.iter().map(of_part).sum::<f64>() / multiplier.area
     }
 }

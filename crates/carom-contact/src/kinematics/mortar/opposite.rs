@@ -51,13 +51,6 @@ impl Primary {
         let siblings = siblings.filter(|&facet| !surface.is_mirror(facet)).collect();
         Self { surface, order, place, siblings }
     }
-
-    /// Some facets at positions `y`, with those of the other contacts.
-    fn at<'a>(&'a self, facets: &[usize], y: Places<'a>) -> Opposites<'a> {
-        let regions =
-            facets.iter().chain(&self.siblings).map(|&facet| (facet, Region::of(&self.surface, facet, y)));
-        Opposites { surface: &self.surface, regions: regions.collect(), y }
-    }
 }
 
 impl Opposite {
@@ -121,16 +114,24 @@ impl Opposite {
         }
     }
 
-    /// A function that finds the part of a facet of the secondary side that faces `facets` at
-    /// positions `y`, with points of quadrature.
+    /// Some facets of the opposite side with their regions at positions `y`, and those of the other
+    /// contacts; none of an obstacle.
+    pub(super) fn regions(&self, facets: &[usize], y: Places) -> Vec<(usize, Region)> {
+        let Self::Side(Primary { surface, siblings, .. }) = self else { return Vec::new() };
+        let all = facets.iter().chain(siblings);
+        all.map(|&facet| (facet, Region::of(surface, facet, y))).collect()
+    }
+
+    /// A function that finds the part of a facet of the secondary side that faces facets with these
+    /// regions at positions `y`, with points of quadrature.
     pub(super) fn facing<'a>(
         &'a self,
-        facets: &[usize],
+        regions: &'a [(usize, Region)],
         rule: &'a Rule,
         y: Places<'a>,
     ) -> impl Fn(Facet) -> Facing + 'a {
         let primary = match self {
-            Self::Side(primary) => Some(primary.at(facets, y)),
+            Self::Side(primary) => Some(Opposites { surface: &primary.surface, regions, y }),
             Self::Obstacle(_) => None,
         };
         move |own| primary.as_ref().map_or_else(|| Facing::whole(rule), |side| side.facing(own, rule))

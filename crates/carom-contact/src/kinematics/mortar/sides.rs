@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use super::cache::Cache;
 use super::cut::{Quadrature, Rule};
-use super::multipliers::{Multiplier, degree_of_pressure, multipliers};
+use super::multipliers::{MOST, Multiplier, Part, degree_of_pressure, multipliers};
 use super::opposite::{Opposite, Primary};
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
@@ -19,6 +19,8 @@ pub struct Mortar {
     pub(super) multipliers: Vec<Multiplier>,
     /// Nodes that represent the multipliers.
     pub(super) nodes: Vec<usize>,
+    /// The multiplier of each polynomial of each facet of the secondary side.
+    pub(super) of_facets: Vec<[usize; MOST]>,
     /// Degree of the pressure.
     pub(super) degree: usize,
     pub(super) rule: Rule,
@@ -68,15 +70,21 @@ impl Mortar {
         let degree = secondary.shape().degree();
         let rule = Rule::new(Quadrature::default(), [degree, opposite.degree()]);
         let mut used = vec![false; secondary.facets()];
-        let parts = multipliers.iter().flat_map(|of| &of.parts);
-        parts.for_each(|part| used[part.facet] = true);
-        let of_facets = &secondary.nodes[..secondary.facets() * secondary.shape.nodes()];
-        let mut surface = [of_facets, opposite.all_nodes()].concat();
+        let mut of_facets = vec![[0; MOST]; secondary.facets()];
+        for (number, of) in multipliers.iter().enumerate() {
+            for &Part { facet, polynomial } in &of.parts {
+                used[facet] = true;
+                of_facets[facet][polynomial] = number;
+            }
+        }
+        let own = &secondary.nodes[..secondary.facets() * secondary.shape.nodes()];
+        let mut surface = [own, opposite.all_nodes()].concat();
         surface.sort_unstable();
         surface.dedup();
         Self {
             surface,
             used,
+            of_facets,
             cache: Mutex::default(),
             nodes: multipliers.iter().map(|of| of.node).collect(),
             degree: degree_of_pressure(degree),

@@ -90,7 +90,28 @@ impl Sample {
     }
 }
 
+/// Largest sum of the forces or moments of a row, relative to the sum of their sizes, that is
+/// round-off.
+const BALANCED: f64 = 1e-9;
+
 impl Stencil {
+    /// Whether the forces of a row between two sides, and their moments, are zero in sum.
+    pub(super) fn is_balanced(&self, slopes: &[Vector<2>], y: Places) -> bool {
+        let origin = y.at(self.nodes[0]);
+        let mut force = Vector::ZERO;
+        let mut moment = 0.0;
+        let mut size = 0.0;
+        let mut reach: f64 = 0.0;
+        for (&node, slope) in self.nodes.iter().zip(slopes) {
+            let arm = y.at(node) - origin;
+            force += *slope;
+            moment += arm[0] * slope[1] - arm[1] * slope[0];
+            size += slope.norm();
+            reach = reach.max(arm.norm());
+        }
+        force.norm() <= BALANCED * size && moment.abs() <= BALANCED * size * reach
+    }
+
     fn place(&self, mortar: &Mortar, sample: &Sample) -> Placed {
         let place = |from: usize, to: usize, node: usize| {
             from + self.nodes[from..to].iter().position(|&other| other == node).unwrap_or_default()
@@ -179,11 +200,12 @@ impl Mortar {
     pub(super) fn samples(&self, pair: &Pair, y: Places) -> Result<Vec<Sample>, ContactError> {
         let multiplier = &self.multipliers[pair.node];
         let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
-        self.at(y, |of_facets| {
+        self.at(y, &multiplier.parts, |of_facets| {
             let mut samples = Vec::new();
             for &Part { facet, polynomial } in &multiplier.parts {
                 let shape = self.secondary.facet(facet).shape;
                 let Faced { points, borders, carriers, .. } = &of_facets[facet];
+                let carriers = carriers.unwrap_or_default();
                 let carried: Vec<usize> =
                     (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
                 for Measured { at, gap, area, turned } in
@@ -217,7 +239,8 @@ impl Mortar {
     /// secondary side.
     pub(super) fn nearest_of(&self, pair: &Pair, y: Places) -> Option<f64> {
         let ends = Rule { points: vec![[-1.0, 0.0], [1.0, 0.0]], quadrature: Quadrature::Segments };
-        let facing = self.opposite.facing(self.opposite.window(pair), &ends, y);
+        let regions = self.opposite.regions(self.opposite.window(pair), y);
+        let facing = self.opposite.facing(&regions, &ends, y);
         let mut nearest: Option<f64> = None;
         for part in &self.multipliers[pair.node].parts {
             let own = self.secondary.facet(part.facet);

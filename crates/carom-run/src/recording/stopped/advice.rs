@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use carom_case::{BodySpec, Case, ContactSpec, FormulaSpec, Law, MeshSpec};
 use carom_record::{Advice, Source, StopPlace};
 
-use super::change::{Kind, Original};
+use super::change::{Kind, Original, quoted};
 
 /// Keyword of the energy guard, beside those of rejected steps.
 pub(super) const GUARD: &str = "energy-guard";
@@ -110,11 +110,11 @@ pub(in crate::recording) fn advice(
     let remedies = TABLE.iter().find(|(of, _)| *of == kind).map_or(OTHERWISE, |(_, remedies)| remedies);
     let original = Original::new(case, source);
     let contact = place.and_then(|place| place.contact.as_deref());
-    let there = There::new(case, place);
+    let there = There::new(&original, case, place);
     let advice = |&(change, what): &Remedy| {
         let what = there.words(what)?;
         let sets = match change {
-            Some(kind) => original.sets(kind, contact).map(|sets| original.accepted(sets))?,
+            Some(kind) => original.possible(original.sets(kind, contact)?)?,
             None => Vec::new(),
         };
         Some(Advice { what, sets })
@@ -124,13 +124,14 @@ pub(in crate::recording) fn advice(
 
 /// The bodies and contacts at the place of a stop: all of the case if it has none.
 struct There<'a> {
+    original: &'a Original<'a>,
     case: &'a Case,
     bodies: Vec<&'a BodySpec>,
     contacts: Vec<&'a ContactSpec>,
 }
 
 impl<'a> There<'a> {
-    fn new(case: &'a Case, place: Option<&StopPlace>) -> Self {
+    fn new(original: &'a Original, case: &'a Case, place: Option<&StopPlace>) -> Self {
         let contact = place.and_then(|place| place.contact.as_deref());
         let body =
             place.and_then(|place| place.body.as_deref().or(place.node.as_ref().map(|n| n.body.as_str())));
@@ -139,6 +140,7 @@ impl<'a> There<'a> {
             None => body.is_none_or(|body| of.bodies().any(|name| name == body)),
         };
         Self {
+            original,
             case,
             bodies: case.bodies.iter().filter(|b| body.is_none_or(|body| body == b.name)).collect(),
             contacts: case.contacts.iter().filter(is_at).collect(),
@@ -189,10 +191,16 @@ impl<'a> There<'a> {
         materials.any(|material| material.law == law)
     }
 
-    /// Elements of degree 1 in place of those of higher degree.
+    /// Elements of degree 1 in place of those of higher degree, of bodies that can have them: cells
+    /// that would lock are refused.
     fn lower_elements(&self) -> Option<String> {
         let higher = self.bodies.iter().filter(|body| body.element.degree() > 1);
-        let lower = higher.filter_map(|body| Some(format!("{:?}", body.element.with_degree(1)?)));
+        let lower = higher.filter_map(|body| {
+            let element = format!("{:?}", body.element.with_degree(1)?);
+            self.original
+                .permits(&format!("body.{}.element={element}", quoted(&body.name)))
+                .then_some(element)
+        });
         let lower: BTreeSet<String> = lower.collect();
         (!lower.is_empty()).then(|| lower.into_iter().collect::<Vec<_>>().join(", "))
     }

@@ -64,6 +64,20 @@ impl<'a> Original<'a> {
         accepted.map_or_else(Vec::new, |_| sets)
     }
 
+    /// These options; none of a case whose text is not known, and nothing if it refuses them.
+    pub(super) fn possible(&self, sets: Vec<String>) -> Option<Vec<String>> {
+        if self.source.is_none() {
+            return Some(Vec::new());
+        }
+        let accepted = self.accepted(sets);
+        (!accepted.is_empty()).then_some(accepted)
+    }
+
+    /// Whether the case can be read and built with this option.
+    pub(super) fn permits(&self, set: &str) -> bool {
+        !self.accepted(vec![set.to_owned()]).is_empty()
+    }
+
     /// The options of a change, `key=value`, at one contact or at all; none if the case has nothing
     /// that it changes.
     pub(super) fn sets(&self, kind: Kind, contact: Option<&str>) -> Option<Vec<String>> {
@@ -169,7 +183,7 @@ fn plain(contact: &ContactSpec) -> bool {
 }
 
 /// A name as a part of a key.
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.chars().all(bare) { name.to_owned() } else { format!("{name:?}") }
 }

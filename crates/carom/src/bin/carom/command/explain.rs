@@ -1,8 +1,10 @@
-//! `carom explain`: properties of time integrators, and the meaning of keys.
+//! `carom explain`: properties of time integrators, and the meaning of keys, metrics and warnings.
 
 use std::fmt::Display;
 
+use carom::WARNINGS;
 use carom::case::{ExplainedKey, read_scheme};
+use carom::record::metrics::{self, Explanation};
 use serde::Serialize;
 
 use crate::exit::{Exit, Failure};
@@ -10,7 +12,7 @@ use crate::out;
 
 /// Print order, spectral radius, damping and period error of a time integrator, and its parameters
 /// in every convention of the literature; or meaning, values and default of a key of case and study
-/// files
+/// files, the definition of a metric, or the reason of a warning
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -22,11 +24,13 @@ Examples:
   carom explain newton.tolerance
   carom explain contact.enforcement
   carom explain hencky
+  carom explain energy_lost
+  carom explain flat-cell
   carom explain rho_inf")]
 pub(crate) struct Arguments {
-    /// Kind of scheme, as in a case file, a key with or without its table, or a word that is a
-    /// value of keys; without it, all kinds of schemes are listed
-    #[arg(value_name = "SCHEME or KEY")]
+    /// Kind of scheme, as in a case file, a key with or without its table, a word that is a value
+    /// of keys, a metric, or the name of a warning; without it, all kinds of schemes are listed
+    #[arg(value_name = "SCHEME, KEY, METRIC or WARNING")]
     what: Option<String>,
     /// Parameters of the scheme
     #[arg(value_name = "KEY=VALUE")]
@@ -42,14 +46,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     let kinds: Vec<&str> = carom_time::KINDS.iter().map(|kind| kind.name).collect();
     if arguments.parameters.is_empty() && !kinds.contains(&what.as_str()) {
-        let keys = carom_study::explained(what);
-        if keys.is_empty() {
+        let explained = Explained::of(what);
+        if explained.is_empty() {
+            let metrics = metrics::explained().map(|metric| metric.name);
+            let words: Vec<&str> =
+                kinds.into_iter().chain(metrics).chain(WARNINGS.iter().map(|entry| entry.id)).collect();
             return Err(Failure::argument(
-                format!("there is no scheme and no key `{what}`"),
-                carom_study::similar_key(what, &kinds),
+                format!("there is no scheme, key, metric or warning `{what}`"),
+                carom_study::similar_key(what, &words),
             ));
         }
-        return print(&Explained { keys }, arguments.json);
+        return print(&explained, arguments.json);
     }
     let spec = read_scheme(what, &arguments.parameters)?;
     if spec.is_static() {
@@ -62,16 +69,49 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     print(&scheme.explain(), arguments.json)
 }
 
-/// The keys that a word may be.
+/// What a word may be.
 #[derive(Serialize)]
 struct Explained {
     keys: Vec<ExplainedKey>,
+    metric: Option<Explanation>,
+    warning: Option<Warning>,
+}
+
+/// The reason of a warning.
+#[derive(Serialize)]
+struct Warning {
+    id: &'static str,
+    why: &'static str,
+    advice: &'static str,
+}
+
+impl Explained {
+    fn of(word: &str) -> Self {
+        // A metric of a column or of measured data has a second name.
+        let is_named = |metric: &Explanation| word.split(':').any(|part| part == metric.name);
+        let warning = WARNINGS.iter().find(|entry| entry.id == word);
+        Self {
+            keys: carom_study::explained(word),
+            metric: metrics::explained().find(is_named),
+            warning: warning.map(|entry| Warning { id: entry.id, why: entry.why, advice: entry.advice }),
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.keys.is_empty() && self.metric.is_none() && self.warning.is_none()
+    }
 }
 
 impl Display for Explained {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let keys: Vec<String> = self.keys.iter().map(ToString::to_string).collect();
-        f.write_str(keys.join("\n\n").trim_end())
+        let mut parts: Vec<String> = self.keys.iter().map(ToString::to_string).collect();
+        if let Some(Explanation { name, meaning, formula, unit }) = &self.metric {
+            parts.push(format!("{name}   metric\n  {meaning}\n\nformula\n  {formula}\n\nunit\n  {unit}"));
+        }
+        if let Some(Warning { id, why, advice }) = &self.warning {
+            parts.push(format!("{id}   warning\n  {why}\n\nremedy\n  {advice}"));
+        }
+        f.write_str(parts.join("\n\n").trim_end())
     }
 }
 
