@@ -59,3 +59,22 @@ time = { end = 1.0, step = 0.5, scheme = { kind = "static" } }
     assert_eq!(said(&["contact.floor.mu=0.0"]), [format!("friction (`mu`) {to_hold}")]);
     assert_eq!(said(&["contact.floor.mu=0.2"]), [format!("larger friction (`mu` or `shear`) {to_hold}")]);
 }
+
+/// Mortar contact has no fallback, so none is advised.
+#[test]
+fn nothing_that_the_case_refuses() {
+    let pressed = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }]
+body = [
+    { name = "low", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [2, 2] } },
+    { name = "top", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0.0, 1.0], max = [1.0, 2.0], cells = [3, 2] } },
+]
+support = [{ on = ["low.bottom"], fix = ["x", "y"] }, { on = ["top.top"], fix = ["x"], move = { y = "-2*t*t" } }]
+contact = [{ name = "joint", secondary = "top.bottom", primary = "low.top" }]
+time = { end = 2.0, step = 0.1, scheme = { kind = "bathe", rho_inf = 0.0 } }
+"#;
+    let fallback = |sets: &[&str]| advice(pressed, sets).iter().any(|what| what.contains("another scheme"));
+    assert!(fallback(&[]));
+    assert!(!fallback(&["contact.joint.method=mortar"]));
+}

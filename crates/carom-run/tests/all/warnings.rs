@@ -95,6 +95,17 @@ pub(super) fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
     recorded_in_full(text, sets).into_iter().map(|w| w.id).collect()
 }
 
+/// The bar lies inside a wall that is turned away from it, also if only its end touches the
+/// surface.
+#[test]
+fn a_wall_that_is_turned_the_wrong_way() {
+    let turned = "contact.wall.primary={ plane = { point = [1.01], normal = [1.0] } }";
+    let given = found(STRETCHED, &[turned]);
+    let of_wall = given.iter().find(|(id, _)| id == "inside-obstacle").map(|(_, what)| what.as_str());
+    assert_eq!(of_wall, Some("contact \"wall\": 10 of 11 nodes of body \"bar\" are inside the obstacle"));
+    assert!(!ids(STRETCHED, &[]).contains(&"inside-obstacle".to_owned()));
+}
+
 #[test]
 fn ids_are_distinct() {
     assert_eq!(WARNINGS.iter().map(|entry| entry.id).collect::<BTreeSet<_>>().len(), WARNINGS.len());

@@ -259,6 +259,11 @@ fn explain_and_schema_and_help() {
     assert!(output(&["explain", "time.scheme.rho_inf"]).contains("scheme \"bathe\""));
     assert!(output(&["explain", "arm.set"]).contains("[[arm]]"));
     assert!(output(&["explain", "mesh.size"]).contains("body.mesh.size"));
+    assert!(output(&["explain", "A.uy:roughness"]).contains("roughness   metric"));
+    assert!(output(&["explain", "flat-cell"]).contains("flat-cell   warning"));
+    // A key and a metric.
+    let both = output(&["explain", "restitution"]);
+    assert!(both.contains("contact.restitution") && both.contains("restitution   metric"), "{both}");
     let schema: serde_json::Value = serde_json::from_str(&output(&["schema"])).unwrap();
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     for command in
