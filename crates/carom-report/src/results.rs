@@ -3,7 +3,6 @@
 use carom_record::metrics::{self, Metric};
 use maud::{Markup, html};
 
-use crate::asked::metrics_of;
 use crate::labels::{instant_label, number};
 use crate::noise::largest;
 use crate::recorded::Recorded;
@@ -17,8 +16,8 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// The table of all metrics.
 pub(crate) fn results(run: &Recorded) -> Markup {
-    let mut known = metrics_of(run);
-    known.retain(|metric| metric.value.is_some() && is_meaningful(run, metric));
+    let mut known = metrics::of_run(run);
+    known.retain(|metric| metric.value.is_some() && !metric.is_work() && is_meaningful(run, metric));
     let groups = by_title(&known.iter().collect::<Vec<_>>());
     html! {
         table.results {
