@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Reference values of the verification, computed from published formulas without any code of Carom.
 
-    scripts/reference_values.py bar|oblique|plastic|ring|static        (needs: pip install numpy scipy)
+    scripts/reference_values.py bar|oblique|plastic|ring|static|waves  (needs: pip install numpy scipy)
 
 bar        cases/bar: an elastic bar strikes a rigid wall, by schemes of the alpha family
 oblique    cases/space/spheres-rub.toml: tangential impulse of an oblique impact with friction
 plastic    cases/plastic: a bar beyond its largest force, shells and rings that yield
 ring       cases/self/crushed.toml: the pressure at which a thin ring touches itself
 static     cases/static: homogeneous states, elastica, Lamé's ring, inflation of a neo-Hookean ring
+waves      cases/mortar/rings-collide.toml: the pressure between two rings that meet all over
 """
 
 import itertools
@@ -464,7 +465,52 @@ def plastic():
     stopping()
 
 
-TABLES = {"bar": bar, "oblique": oblique, "plastic": plastic, "ring": ring, "static": static}
+def waves(poisson=0.3, inner=1.0, joint=1.5, outer=2.0, speed=0.01, cells=800):
+    """Radial waves in plane strain, E = ρ = 1: linear cells with lumped masses, central differences.
+    The ring inside the joint starts with the speed, the other one at rest; they stay together."""
+    shear = 0.5 / (1 + poisson)
+    lame_constant = poisson / (1 + poisson) / (1 - 2 * poisson)
+    bulk = lame_constant + 2 * shear
+    radii = np.linspace(inner, outer, cells + 1)
+    middles = 0.5 * (radii[1:] + radii[:-1])
+    size = radii[1] - radii[0]
+    mass = np.zeros(cells + 1)
+    mass[:-1] += 0.5 * size * middles
+    mass[1:] += 0.5 * size * middles
+    at_joint = int(np.argmin(abs(radii - joint)))
+    u = np.zeros(cells + 1)
+    v = np.where(radii < joint, speed, 0.0)
+    v[at_joint] = 0.5 * speed
+    step = 0.5 * size / np.sqrt(bulk)
+    rows = []
+    for k in range(int(0.62 / step)):
+        stretch = (u[1:] - u[:-1]) / size
+        hoop = 0.5 * (u[1:] + u[:-1]) / middles
+        radial = middles * (bulk * stretch + lame_constant * hoop)
+        around = 0.5 * size * (bulk * hoop + lame_constant * stretch)
+        force = np.zeros(cells + 1)
+        force[:-1] += radial - around
+        force[1:] -= radial + around
+        v += step * force / mass
+        u += step * v
+        beside = radial[at_joint - 1 : at_joint + 1] / middles[at_joint - 1 : at_joint + 1]
+        rows.append((k * step, -beside.mean()))
+    times, pressures = np.array(rows).T
+    plane = 0.5 * np.sqrt(bulk) * speed
+    for time in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6):
+        mean = pressures[abs(times - time) <= 0.01].mean()
+        print(f"rings that collide: p/p₁ = {mean / plane:.4f} at t = {time}")
+    print(f"first waves return at t = {2 * (joint - inner) / np.sqrt(bulk):.5f}")
+
+
+TABLES = {
+    "bar": bar,
+    "oblique": oblique,
+    "plastic": plastic,
+    "ring": ring,
+    "static": static,
+    "waves": waves,
+}
 
 if __name__ == "__main__":
     if len(sys.argv) != 2 or sys.argv[1] not in TABLES:

@@ -60,7 +60,8 @@ enum Colours {
     States([&'static str; 3], bool),
 }
 
-/// Colours of sticking, and of slip against and along the tangent. The tangent is the outward
+/// Colours of sticking and of slip in either direction, the first one against the tangent unless
+/// flipped. The tangent is the outward
 /// normal of the primary side turned by a quarter clockwise; a positive traction is the friction
 /// along it on the secondary side, which then slips the other way.
 const STATES: [&str; 3] = [LINES[6], LINES[2], LINES[3]];

@@ -87,7 +87,8 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
         carom_mechanics::inside(model, y, CLOSED * model.scale).into_iter().map(|(k, ..)| k).collect();
     for (k, depths) in depths(model, y).iter().enumerate() {
         let keeps = matches!(case.contacts[k].overlap, Overlap::KeepGap | Overlap::Touch);
-        if !keeps && !overlap.contains(&k) {
+        let is_treated = keeps || case.contacts[k].overlap == Overlap::Relax;
+        if !is_treated && !overlap.contains(&k) {
             continue;
         }
         let contact = &model.contacts[k];

@@ -35,16 +35,15 @@ fn bernstein(degree: usize, xi: f64) -> Vec<f64> {
     }
 }
 
-/// ∫ f f dx over facets of length one that share their end functions, row-major.
-fn gram(functions: Functions, degree: usize, facets: usize) -> Vec<f64> {
-    let size = facets * degree + 1;
-    let mut gram = vec![0.0; size * size];
+/// ∫ f g dx over facets of length one whose end functions are shared, row-major.
+fn gram([f, g]: [Functions; 2], [of_f, of_g]: [usize; 2], facets: usize) -> Vec<f64> {
+    let width = facets * of_g + 1;
+    let mut gram = vec![0.0; (facets * of_f + 1) * width];
     for facet in 0..facets {
-        for (xi, weight) in quadrature::line(2 * degree).iter() {
-            let values = functions(degree, xi[0]);
-            for (i, a) in values.iter().enumerate() {
-                for (j, b) in values.iter().enumerate() {
-                    gram[(facet * degree + i) * size + facet * degree + j] += 0.5 * weight * a * b;
+        for (xi, weight) in quadrature::line(of_f + of_g).iter() {
+            for (i, a) in f(of_f, xi[0]).iter().enumerate() {
+                for (j, b) in g(of_g, xi[0]).iter().enumerate() {
+                    gram[(facet * of_f + i) * width + facet * of_g + j] += 0.5 * weight * a * b;
                 }
             }
         }
@@ -106,11 +105,11 @@ fn inf_sup(shape: FacetShape, facets: usize, fixed: bool) -> f64 {
     let k = shape.degree();
     let degree = k.saturating_sub(1).max(1);
     let rows = rows(shape, facets);
-    let pressures = gram(bernstein, degree, facets);
+    let pressures = gram([bernstein; 2], [degree; 2], facets);
     assert_eq!(rows.len(), facets * degree + 1);
     let all = facets * k + 1;
     let free = if fixed { 1..all - 1 } else { 0..all };
-    let traces = gram(lagrange, k, facets);
+    let traces = gram([lagrange; 2], [k; 2], facets);
     let traces: Vec<f64> =
         free.clone().flat_map(|i| free.clone().map(move |j| i * all + j)).map(|at| traces[at]).collect();
     let rows: Vec<&[f64]> = rows.iter().map(|row| &row[free.clone()]).collect();
@@ -127,6 +126,21 @@ fn inf_sup(shape: FacetShape, facets: usize, fixed: bool) -> f64 {
         square = dot(&pressure, &times(&schur, &pressure));
     }
     square.sqrt()
+}
+
+/// The rows are ∫ B N dx.
+#[test]
+fn rows_are_integrals() {
+    for shape in [FacetShape::L2, FacetShape::L3, FacetShape::L4] {
+        let k = shape.degree();
+        let wanted = gram([bernstein, lagrange], [k.saturating_sub(1).max(1), k], 5);
+        for (row, wanted) in rows(shape, 5).iter().zip(wanted.chunks_exact(5 * k + 1)) {
+            assert!(
+                row.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{shape:?}: {row:?} {wanted:?}"
+            );
+        }
+    }
 }
 
 /// Pressures of lower degree are among the traces if the ends are free.

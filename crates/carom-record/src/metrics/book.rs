@@ -12,7 +12,7 @@ pub fn book_table() -> String {
         .fold(head.to_owned(), |text, row| text + &row)
 }
 
-/// What a metric is.
+/// Definition of a metric, in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Explanation {
     /// Name in expectations and studies, without that of a column.

@@ -34,7 +34,7 @@ time = { end = 2.0, step = 0.1, scheme = { kind = "bathe", rho_inf = 0.0 } }
     assert_eq!(lower(&[]), ["an element of lower degree (Tet4) there: its cells invert later"]);
     assert!(lower(&["body.block.element=Hex27"])[0].contains("(Hex8)"));
     assert!(lower(&["body.block.element=Tet4"]).is_empty());
-    // Its flow would be locked in cells of constant strain, which are refused.
+    // Plastic flow would be locked in cells of constant strain, which are refused.
     let yields = ["material.m.law=hencky", "material.m.plastic={ yield = 0.01, hardening = 0.1 }"];
     assert!(lower(&yields).is_empty());
     assert!(!advice(crushed, &[]).iter().any(|what| what.contains("load") || what.contains("polygon")));

@@ -160,8 +160,8 @@ impl Balance {
     }
 }
 
-/// Number of rows between two bodies at a state, and the largest moment of their forces, over
-/// Σ|y − c||f| with the centre c of the nodes on which they act.
+/// Number of rows between two bodies at a state, and the largest moment of their forces, relative
+/// as in [`moment`].
 fn moments(sim: &Simulation) -> (usize, f64) {
     let (model, y) = (sim.model(), &sim.state().y);
     let (mut count, mut largest) = (0, 0.0_f64);

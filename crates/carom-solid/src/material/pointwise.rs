@@ -190,7 +190,7 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     }
 
     fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {
-        // Nothing that follows is compiled for a law without memory.
+        // A law without memory does not evolve: the body asks for its stresses instead.
         if const { L::MEMORY == 0 } {
             return Ok(());
         }

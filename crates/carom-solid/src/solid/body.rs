@@ -239,7 +239,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         memory: &mut [f64],
     ) -> Result<Energies, Inverted> {
         let Medium { law, mean, .. } = self.medium(cell);
-        let mut energies = if self.memory > 0 {
+        // Regions of a body may have laws with and without memory.
+        let mut energies = if law.memory() > 0 {
             self.evolve(&**law, cell, at, ask, numbers, memory)?
         } else {
             let stored = match (ask, at.before) {

@@ -372,3 +372,57 @@ fn what_has_yielded_is_a_share_of_the_points() {
     }
     assert!(shares.iter().any(|share| *share > 0.0 && *share < 1.0), "{shares:?}");
 }
+
+/// A region that remembers nothing, in a body of which another one does.
+#[test]
+fn elastic_cells_of_a_body_that_yields_are_those_of_an_elastic_body() {
+    let elastic = metal().elastic;
+    for mesh in meshes() {
+        let count = mesh.cell_count();
+        let mut mixed = mesh.clone();
+        mixed.regions = (0..count).map(|cell| u32::from(cell == count - 1)).collect();
+        if count == 1 {
+            continue;
+        }
+        let laws: [&dyn Constitutive; 2] = [&metal(), &elastic];
+        let materials = laws.map(|law| RegionMaterial { law, density: 1.0 });
+        let mut bodies = vec![
+            [
+                body_of_regions(mixed.clone(), &materials, PlaneState::Strain, 1.0),
+                Ok(made(mesh.clone(), &elastic)),
+            ]
+            .map(Result::unwrap),
+        ];
+        if mesh.element == Element::Q4 {
+            let laws: [&dyn VolumeAveraged; 2] = [&metal(), &elastic_law()];
+            let materials = laws.map(|law| RegionMaterial { law, density: 1.0 });
+            let alone = RegionMaterial { law: &elastic_law() as &dyn VolumeAveraged, density: 1.0 };
+            bodies.push([
+                mean_dilatation_body(mixed, &materials, 1.0).unwrap(),
+                mean_dilatation_body(mesh.clone(), &[alone], 1.0).unwrap(),
+            ]);
+        }
+        let [start, end] = [0.1, 0.2].map(|by| moved(&mesh, by));
+        let change: Vec<f64> = end.iter().map(|y| (3.0 * y).sin()).collect();
+        for [mixed, elastic] in &bodies {
+            let memory = vec![0.0; count * mixed.memory()];
+            for before in [None, Some(&start[..])] {
+                for ask in [Ask::Force, Ask::Tangent, Ask::Product(&change)] {
+                    let answers = [(mixed, &memory[..]), (elastic, &[])].map(|(body, memory)| {
+                        let past = Past { memory, dt: 0.1 };
+                        of_cell(&**body, count - 1, &Configuration { before, y: &end, past }, ask)
+                    });
+                    let [got, wanted] = answers.map(|(numbers, energy, _)| [numbers, vec![energy]].concat());
+                    let size = wanted.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                    let apart = got.iter().zip(&wanted).all(|(a, b)| (a - b).abs() <= 1e-13 * size);
+                    assert!(size > 0.0 && apart, "{:?} {ask:?}: {got:?} {wanted:?}", mesh.element);
+                }
+            }
+        }
+    }
+}
+
+fn elastic_law() -> carom_solid::Law {
+    let Hencky { lambda, mu } = metal().elastic;
+    carom_solid::Law::Hencky { lambda, mu }
+}

@@ -260,7 +260,8 @@ impl Opposites<'_> {
                 // The secondary side is not traversed in the direction of the primary.
                 let is_start = (own.at(self.y, xi).tangent.dot(&part.region.start[1]) > 0.0) == (end == 0);
                 let is_free = part.region.is_free[usize::from(!is_start)];
-                if xi.abs() >= 1.0 || !is_free {
+                // Rows do not extend over the nodes of other contacts.
+                if xi.abs() >= 1.0 || !is_free || !self.surface.is_of_side(part.facet) {
                     continue;
                 }
                 let beside = |end: usize| {

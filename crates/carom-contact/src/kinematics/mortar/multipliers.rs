@@ -7,8 +7,8 @@
 //!
 //! continuous over the joints of facets but for kinks of more than 30°, where each facet has a
 //! coefficient of its own. B_j ≥ 0 and Σ_j B_j = 1: coefficients p_j ≥ 0 give a pressure p ≥ 0
-//! everywhere. Pairs of spaces of this kind are inf–sup stable, while pressures of the degree of
-//! the facets are not where the ends of the side are fixed.
+//! everywhere. For k ≥ 2 pairs of spaces of this kind are inf–sup stable, while pressures of the
+//! degree of the facets, as for k = 1, are not where the ends of the side are fixed.
 
 use carom_solid::quadrature;
 

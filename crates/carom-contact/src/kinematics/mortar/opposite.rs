@@ -71,6 +71,12 @@ impl Opposite {
         }
     }
 
+    /// Global numbers of the nodes of facets that belong to other contacts.
+    pub(super) fn sibling_nodes(&self) -> Vec<usize> {
+        let Self::Side(Primary { surface, siblings, .. }) = self else { return Vec::new() };
+        siblings.iter().flat_map(|&facet| surface.facet(facet).nodes).copied().collect()
+    }
+
     /// A pair of a multiplier with the whole opposite side; none if it has no facets.
     pub(super) fn whole(&self, multiplier: usize) -> Option<Pair> {
         match self {

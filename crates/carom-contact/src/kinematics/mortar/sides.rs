@@ -78,7 +78,7 @@ impl Mortar {
             }
         }
         let own = &secondary.nodes[..secondary.facets() * secondary.shape.nodes()];
-        let mut surface = [own, opposite.all_nodes()].concat();
+        let mut surface = [own, opposite.all_nodes(), &opposite.sibling_nodes()].concat();
         surface.sort_unstable();
         surface.dedup();
         Self {

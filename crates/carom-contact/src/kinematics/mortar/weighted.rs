@@ -90,28 +90,7 @@ impl Sample {
     }
 }
 
-/// Largest sum of the forces or moments of a row, relative to the sum of their sizes, that is
-/// round-off.
-const BALANCED: f64 = 1e-9;
-
 impl Stencil {
-    /// Whether the forces of a row between two sides, and their moments, are zero in sum.
-    pub(super) fn is_balanced(&self, slopes: &[Vector<2>], y: Places) -> bool {
-        let origin = y.at(self.nodes[0]);
-        let mut force = Vector::ZERO;
-        let mut moment = 0.0;
-        let mut size = 0.0;
-        let mut reach: f64 = 0.0;
-        for (&node, slope) in self.nodes.iter().zip(slopes) {
-            let arm = y.at(node) - origin;
-            force += *slope;
-            moment += arm[0] * slope[1] - arm[1] * slope[0];
-            size += slope.norm();
-            reach = reach.max(arm.norm());
-        }
-        force.norm() <= BALANCED * size && moment.abs() <= BALANCED * size * reach
-    }
-
     fn place(&self, mortar: &Mortar, sample: &Sample) -> Placed {
         let place = |from: usize, to: usize, node: usize| {
             from + self.nodes[from..to].iter().position(|&other| other == node).unwrap_or_default()

@@ -114,7 +114,14 @@ pub(in crate::recording) fn advice(
     let advice = |&(change, what): &Remedy| {
         let what = there.words(what)?;
         let sets = match change {
-            Some(kind) => original.possible(original.sets(kind, contact)?)?,
+            Some(kind) => {
+                let sets = original.accepted(original.sets(kind, contact)?);
+                // Some contacts have no fallback at all.
+                if kind == Kind::Fallback && sets.is_empty() && original.is_known() {
+                    return None;
+                }
+                sets
+            }
             None => Vec::new(),
         };
         Some(Advice { what, sets })

@@ -64,18 +64,14 @@ impl<'a> Original<'a> {
         accepted.map_or_else(Vec::new, |_| sets)
     }
 
-    /// These options; none of a case whose text is not known, and nothing if it refuses them.
-    pub(super) fn possible(&self, sets: Vec<String>) -> Option<Vec<String>> {
-        if self.source.is_none() {
-            return Some(Vec::new());
-        }
-        let accepted = self.accepted(sets);
-        (!accepted.is_empty()).then_some(accepted)
+    /// Whether the text of the case is known, so that options can be tried.
+    pub(super) fn is_known(&self) -> bool {
+        self.source.is_some()
     }
 
-    /// Whether the case can be read and built with this option.
+    /// Whether the case can be read and built with this option, as far as that is known.
     pub(super) fn permits(&self, set: &str) -> bool {
-        !self.accepted(vec![set.to_owned()]).is_empty()
+        !self.is_known() || !self.accepted(vec![set.to_owned()]).is_empty()
     }
 
     /// The options of a change, `key=value`, at one contact or at all; none if the case has nothing

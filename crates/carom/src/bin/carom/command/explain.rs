@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     print(&scheme.explain(), arguments.json)
 }
 
-/// What a word may be.
+/// Keys, a metric and a warning with the same name.
 #[derive(Serialize)]
 struct Explained {
     keys: Vec<ExplainedKey>,
