@@ -380,7 +380,7 @@ fn elastic_cells_of_a_body_that_yields_are_those_of_an_elastic_body() {
     for mesh in meshes() {
         let count = mesh.cell_count();
         let mut mixed = mesh.clone();
-        mixed.regions = (0..count).map(|cell| u32::from(cell == count - 1)).collect();
+        mixed.regions = (0..count).map(|cell| u16::from(cell == count - 1)).collect();
         if count == 1 {
             continue;
         }
