@@ -747,17 +747,51 @@ def quarter_ring(inner, outer, count, rows):
 
 def eighth_shell(inner, outer, count, layers):
     """An eighth of a thick spherical shell about the origin, ten-node tetrahedra: a spherical triangle of
-    count² triangles, and layers of prisms of three tetrahedra. Volume `shell`; surfaces `inner`, `outer`,
-    `plane_x`, `plane_y` and `plane_z`."""
+    count² triangles, and layers of prisms. Volume `shell`; surfaces `inner`, `outer`, `plane_x`, `plane_y`
+    and `plane_z`."""
+
+    def place(i, j, layer):
+        direction = (2 * count - i - j, i, j)
+        norm = sum(x * x for x in direction) ** 0.5
+        radius = inner + (outer - inner) * layer / (2 * layers)
+        return tuple(radius * x / norm for x in direction)
+
+    sides = ("inner", "outer", "plane_x", "plane_y", "plane_z")
+    return triangle_of_prisms("shell", sides, count, layers, place)
+
+
+def necked_bar(length, radius, thinner, count, layers, growth):
+    """A quarter of a bar along z, ten-node tetrahedra, whose radius falls linearly by the share `thinner`
+    towards z = 0. Layers of 3 count² cells, the last `growth` times as thick as the first. Volume `bar`;
+    surfaces `neck` (z = 0), `end`, `surface`, `plane_x` and `plane_y`."""
+
+    def height(layer):
+        # Middle nodes lie halfway between the ends of their layer.
+        if layer % 2:
+            return (height(layer - 1) + height(layer + 1)) / 2
+        return length * (growth ** (layer / (2 * layers)) - 1) / (growth - 1)
+
+    def place(i, j, layer):
+        z = height(layer)
+        ring = i + j
+        out = radius * (1 - thinner * (1 - z / length)) * ring / (2 * count)
+        angle = pi / 2 * j / max(ring, 1)
+        return (out * cos(angle) if i else 0.0, out * sin(angle) if j else 0.0, z)
+
+    sides = ("neck", "end", "surface", "plane_x", "plane_y")
+    return triangle_of_prisms("bar", sides, count, layers, place)
+
+
+def triangle_of_prisms(name, sides, count, layers, place):
+    """Ten-node tetrahedra, three in each prism: layers of a triangle of count² triangles with the corners
+    (0, 0), (2 count, 0) and (0, 2 count) of a lattice, whose points are at place(i, j, layer), layer = 0 …
+    2 layers. `sides` names the surfaces of the first and the last layer, that of i + j = 2 count, and those
+    of i = 0 and j = 0."""
     mesh = Mesh()
 
     def node(point):
         # Twice the lattice: the corners of cells are even.
-        i, j, layer = point
-        direction = (2 * count - i - j, i, j)
-        norm = sum(x * x for x in direction) ** 0.5
-        radius = inner + (outer - inner) * layer / (2 * layers)
-        return mesh.node(point, tuple(radius * x / norm for x in direction))
+        return mesh.node(point, place(*point))
 
     def cell(corners, pairs):
         middles = [tuple((a + b) // 2 for a, b in zip(corners[m], corners[n])) for m, n in pairs]
@@ -773,11 +807,13 @@ def eighth_shell(inner, outer, count, layers):
         if i + j < count - 1:
             flat.append([(i + 1, j), (i + 1, j + 1), (i, j + 1)])
     volume = []
-    sides = {name: [] for name in ("inner", "outer", "plane_x", "plane_y", "plane_z")}
-    in_plane = {
-        "plane_x": lambda p: p[0] + p[1] == 2 * count,
-        "plane_y": lambda p: p[0] == 0,
-        "plane_z": lambda p: p[1] == 0,
+    faces = {side: [] for side in sides}
+    holds = {
+        sides[0]: lambda p: p[2] == 0,
+        sides[1]: lambda p: p[2] == 2 * layers,
+        sides[2]: lambda p: p[0] + p[1] == 2 * count,
+        sides[3]: lambda p: p[0] == 0,
+        sides[4]: lambda p: p[1] == 0,
     }
     for layer in range(layers):
         for corners in flat:
@@ -793,16 +829,12 @@ def eighth_shell(inner, outer, count, layers):
                 volume.append(cell(four, [(0, 1), (1, 2), (2, 0), (0, 3), (2, 3), (1, 3)]))
                 for face in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)):
                     points = [four[k] for k in face]
-                    ends = {0: "inner", 2 * layers: "outer"}
-                    heights = {point[2] for point in points}
-                    if len(heights) == 1 and (name := ends.get(heights.pop())):
-                        sides[name].append(triangle(points))
-                    for name, holds in in_plane.items():
-                        if all(map(holds, points)):
-                            sides[name].append(triangle(points))
-    mesh.add(3, "shell", volume)
-    for name, faces in sides.items():
-        mesh.add(2, name, faces)
+                    for side, is_on in holds.items():
+                        if all(map(is_on, points)):
+                            faces[side].append(triangle(points))
+    mesh.add(3, name, volume)
+    for side, triangles in faces.items():
+        mesh.add(2, side, triangles)
     return mesh.file(rounded(15))
 
 
@@ -916,6 +948,7 @@ def recipes(carom):
         "cases/plastic/thin-ring.msh": lambda: quarter_ring(0.0995, 0.1005, 8, 1),
         "cases/plastic/thick-ring.msh": lambda: quarter_ring(1.0, 2.0, 12, 12),
         "cases/plastic/shell.msh": lambda: eighth_shell(1.0, 2.0, 6, 6),
+        "cases/plastic/neck.msh": lambda: necked_bar(26.667, 6.413, 0.018, 4, 20, 6.0),
         "cases/plastic/thin-shell.msh": lambda: eighth_shell(0.1, 0.11, 4, 1),
         "cases/static/ring.msh": lambda: written("cases/static/ring.geo"),
         "cases/static/cylinders.msh": cylinders,

@@ -35,6 +35,11 @@ impl Iterate {
         }
         self.pairings.iter_mut().for_each(Pairing::restart);
     }
+
+    /// Adds a share of the increment of the last step.
+    pub(crate) fn extrapolate(&mut self, last: &[f64], share: f64) {
+        self.increment.iter_mut().zip(last).for_each(|(increment, last)| *increment += share * last);
+    }
 }
 
 /// Results at an iterate.

@@ -160,7 +160,7 @@ impl<'a> Newton<'a> {
             work,
             contact,
             renewal: Renewal::new(frozen, factors, double, cost),
-            unpredicted: (!is_static).then(start),
+            unpredicted: (!is_static || predicted > 0.0).then(start),
             trust: if predicted > 0.0 { TRUST * predicted } else { f64::INFINITY },
             iteration: 0,
             step: f64::INFINITY,

@@ -96,6 +96,11 @@ impl Stepper for Implicit {
             let mut equations = Equations::new(model, state, stage, time)?;
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
+            if goes_on(&equations)
+                && let Some(previous) = &state.previous
+            {
+                guess.extrapolate(&previous.increment, dt / previous.dt);
+            }
             end = equations.stage.end;
             ends.push(time);
             let (mut solved, effort) = if self.in_velocity {
@@ -187,7 +192,8 @@ impl Stepper for Implicit {
             next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
         }
 
-        let previous = self.kernel.two_step().then(|| Previous {
+        let keeps = self.kernel.two_step() || goes_on(&equations);
+        let previous = keeps.then(|| Previous {
             dt,
             increment: solved.at.increment.clone(),
             velocity: state.v.clone(),
@@ -264,6 +270,14 @@ fn paths<'a>(state: &'a State, finished: &'a [Point], ends: &[f64]) -> Vec<Path<
     let first: [&[f64]; 3] = [&state.y, &state.v, &state.a];
     let starts = std::iter::once(first).chain(finished.iter().map(|p| [&p.y[..], &p.v[..], &p.a[..]]));
     starts.zip(ends.windows(2)).map(|(start, ends)| Path { start, from: ends[0], to: ends[1] }).collect()
+}
+
+/// Whether the guess of a stage goes on as the last step went. At the start of a load step the
+/// points that flowed last lie on the yield surface, and round-off decides whether their tangent is
+/// that of flow or the elastic one: Newton's method from there does not find the equilibrium of a
+/// bar that necks.
+fn goes_on(equations: &Equations) -> bool {
+    equations.stage.is_static() && equations.model.remembers()
 }
 
 /// Moving supports have their own velocities and accelerations, not the scheme's.
