@@ -35,9 +35,10 @@ impl Materials {
         new
     }
 
-    /// Makes room for the memory of so many bodies.
+    /// Makes room for the memory of so many bodies, which is to be overwritten: that of other
+    /// states is neither changed nor copied.
     pub(crate) fn resize(&mut self, bodies: usize, numbers: usize) {
-        if self.memory.len() != numbers {
+        if Arc::get_mut(&mut self.memory).is_none_or(|memory| memory.len() != numbers) {
             self.memory = Arc::new(vec![0.0; numbers]);
         }
         self.stored.resize(bodies, 0.0);
@@ -53,6 +54,13 @@ impl Materials {
     /// Memory of the materials at the start of a step of length `dt`.
     pub fn past(&self, dt: f64) -> Past<'_> {
         Past { memory: &self.memory, dt }
+    }
+
+    /// Becomes a copy of others in all but the memory, which a step overwrites.
+    pub(crate) fn follow(&mut self, others: &Self) {
+        self.stored.clone_from(&others.stored);
+        self.dissipated.clone_from(&others.dissipated);
+        self.lost.clone_from(&others.lost);
     }
 
     /// Takes over what a trial stores, remembers and dissipates.

@@ -125,7 +125,7 @@ impl Carried {
     }
 }
 
-/// Data of the previous step for a two-step scheme.
+/// Data of the previous step, for a two-step scheme or a guess.
 #[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
 #[educe(Clone)]
 pub struct Previous {
@@ -231,7 +231,8 @@ pub struct State {
     pub pairs: Vec<Vec<Pair>>,
     /// Energies and works.
     pub ledger: Ledger,
-    /// The previous step, for a two-step scheme; none at the start and after an activation.
+    /// The previous step, for a two-step scheme and for load steps of materials that remember; none
+    /// at the start and after an activation.
     pub previous: Option<Previous>,
     /// For an explicit scheme.
     pub half_step: HalfStepVelocity,
@@ -364,8 +365,8 @@ impl State {
     }
 
     /// Becomes a copy of another state, in reused memory, whose positions, velocities,
-    /// accelerations, internal forces and half-step velocities are not copied: a step overwrites
-    /// them. Contact forces are zero.
+    /// accelerations, internal forces, memory and half-step velocities are not copied: a step
+    /// overwrites them. Contact forces are zero.
     pub(crate) fn follow(&mut self, start: &Self) {
         let Self { step, time, y, f_external, f_friction, contact_forces, impulses, .. } = start;
         let Self { carried, pairs, ledger, previous, half_step, frozen, .. } = start;
@@ -396,7 +397,7 @@ impl State {
         self.frozen.clone_from(frozen);
         self.bisection = *bisection;
         self.overlaps.clone_from(overlaps);
-        self.materials.clone_from(materials);
+        self.materials.follow(materials);
     }
 
     /// Takes over the pairs at the end of a solve.

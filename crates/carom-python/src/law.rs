@@ -113,7 +113,6 @@ impl Point {
 }
 
 impl<const D: usize> Material<D> for Law {
-    const ENERGY_DEGREE: usize = 0;
     const MEMORY: usize = MOST;
     type Point = Point;
 
@@ -173,11 +172,6 @@ impl<const D: usize> Material<D> for Law {
             }
         }
         block
-    }
-
-    fn cauchy(&self, p: &Point) -> Mat<D> {
-        let f = Mat::<D>(std::array::from_fn(|i| std::array::from_fn(|j| p.f[i][j])));
-        p.stress::<D>() * f.transposed() * (1.0 / p.det_f)
     }
 
     fn lateral(&self, p: &Point) -> f64 {

@@ -136,6 +136,14 @@ impl Law {
     }
 }
 
+impl J2 {
+    /// The law as a type that makes bodies. Compiled here, not where it is used: kernels need the
+    /// optimisation of this crate.
+    pub fn constitutive(self) -> Box<dyn Constitutive> {
+        Box::new(self)
+    }
+}
+
 /// Body of a mesh of any dimension, of one material; plane strain in the plane.
 ///
 /// # Errors

@@ -22,7 +22,6 @@ struct Damaged<P> {
 }
 
 impl<const D: usize> Material<D> for Damage {
-    const ENERGY_DEGREE: usize = 0;
     const MEMORY: usize = 1;
     type Point = Damaged<<NeoHookean as Material<D>>::Point>;
 
@@ -58,10 +57,6 @@ impl<const D: usize> Material<D> for Damage {
         let stress: Mat<D> = self.of.stress(&point.of);
         let grows = if point.end > point.start { 1.0 / point.end } else { 0.0 };
         (intact - stress.apply(a).outer(&stress.apply(b)) * grows) * (self.threshold / point.end)
-    }
-
-    fn cauchy(&self, point: &Self::Point) -> Mat<D> {
-        self.of.cauchy(&point.of) * (self.threshold / point.end)
     }
 
     fn lateral(&self, point: &Self::Point) -> f64 {

@@ -295,7 +295,7 @@ fn body(
 /// The law of a material of the case, with its plastic flow.
 fn constitutive(material: &MaterialSpec) -> Box<dyn Constitutive> {
     match plastic(material) {
-        Some(law) => Box::new(law),
+        Some(law) => law.constitutive(),
         None => law(material).constitutive(),
     }
 }

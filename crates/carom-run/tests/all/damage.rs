@@ -75,10 +75,6 @@ impl<const D: usize> Material<D> for Damage {
         elastic
     }
 
-    fn cauchy(&self, point: &Self::Point) -> Mat<D> {
-        self.0.cauchy(&point.of) * intact(point.history[1])
-    }
-
     fn lateral(&self, point: &Self::Point) -> f64 {
         Material::<D>::lateral(&self.0, &point.of) * intact(point.history[1])
     }

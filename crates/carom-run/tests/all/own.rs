@@ -50,10 +50,6 @@ impl<const D: usize> Material<D> for Own {
         self.0.tangent(point, a, b)
     }
 
-    fn cauchy(&self, point: &Self::Point) -> Mat<D> {
-        self.0.cauchy(point)
-    }
-
     fn lateral(&self, point: &Self::Point) -> f64 {
         Material::<D>::lateral(&self.0, point)
     }

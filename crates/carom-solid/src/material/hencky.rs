@@ -58,7 +58,6 @@ impl Hencky {
 }
 
 impl<const D: usize> Material<D> for Hencky {
-    const ENERGY_DEGREE: usize = 0;
     type Point = Point<D>;
 
     #[inline(always)]

@@ -25,7 +25,7 @@ pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 /// [`Material::released`].
 pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
-    const ENERGY_DEGREE: usize;
+    const ENERGY_DEGREE: usize = 0;
 
     /// Whether Ψ depends on FᵀF alone; otherwise it is quadratic in H.
     const OBJECTIVE: bool = true;
@@ -141,8 +141,11 @@ pub trait Material<const D: usize>: Send + Sync {
         Ok(changes)
     }
 
-    /// Cauchy stress within the dimensions of the body.
-    fn cauchy(&self, point: &Self::Point) -> Mat<D>;
+    /// Cauchy stress within the dimensions of the body, P Fᵀ/J, of a point at H.
+    fn cauchy(&self, point: &Self::Point, h: &Mat<D>) -> Mat<D> {
+        let f = Mat::identity() + *h;
+        self.stress(point) * f.transposed() * (1.0 / (1.0 + excess_det(h)))
+    }
 
     /// Cauchy normal stress in the directions in which the body does not extend.
     fn lateral(&self, point: &Self::Point) -> f64;

@@ -70,7 +70,6 @@ pub struct Point<const D: usize> {
 }
 
 impl<W: OfInvariants, const D: usize> Material<D> for Isochoric<W> {
-    const ENERGY_DEGREE: usize = 0;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -159,10 +158,6 @@ impl<W: OfInvariants, const D: usize> Material<D> for Isochoric<W> {
             + second_change * beta
             + g * (self.bulk * swells)
             - turned * (self.bulk * p.ln_j)
-    }
-
-    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
-        self.stress(p) * p.f.transposed() * (1.0 / p.det_f)
     }
 
     /// From A₃₃ = −a and B₃₃ = t − 2c.

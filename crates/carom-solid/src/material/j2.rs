@@ -119,40 +119,42 @@ impl J2 {
     ) -> Point<D> {
         let mu = self.elastic.mu;
         let strains = frame.deviator();
-        let trace = frame.trace();
         let norm = strains.iter().map(|strain| strain * strain).sum::<f64>().sqrt();
         let mises = 6.0_f64.sqrt() * mu * norm;
         let strength = self.hardening.at(start.alpha);
         let excess = mises - strength.stress;
-        let mut of = self.elastic.stress_at(frame);
-        let stored = self.elastic.energy_of(trace, &strains) + strength.stored;
         if !(may_flow && excess > 0.0) {
+            let stored = self.elastic.energy_of(frame.trace(), &strains) + strength.stored;
+            let of = self.elastic.stress_at(frame);
             return Point { of, start, flow: Flow::default(), flown: [0.0; 3], stored, released: 0.0 };
         }
         let flow = self.hardening.flow(start.alpha, excess, 3.0 * mu);
         let share = 3.0 * mu * flow.strain / mises;
         let shear = 2.0 * mu * (1.0 - share);
-        let mean = self.elastic.bulk() * trace;
-        of.kirchhoff = strains.map(|strain| mean + shear * strain);
-        of.volumetric = self.elastic.bulk() - shear / 3.0;
-        of.shear = shear;
-        of.softening = 2.0 * mu * (3.0 * mu / (3.0 * mu + flow.slope) - share);
-        of.direction = strains.map(|strain| strain / norm);
+        let mean = self.elastic.bulk() * frame.trace();
         let elastic = strains.map(|strain| (1.0 - share) * strain);
         let hardened = self.hardening.at(start.alpha + flow.strain).stored;
+        let stored = self.elastic.energy_of(frame.trace(), &elastic) + hardened;
+        let of = PrincipalStress {
+            frame,
+            kirchhoff: strains.map(|strain| mean + shear * strain),
+            volumetric: self.elastic.bulk() - shear / 3.0,
+            shear,
+            softening: 2.0 * mu * (3.0 * mu / (3.0 * mu + flow.slope) - share),
+            direction: strains.map(|strain| strain / norm),
+        };
         Point {
             of,
             start,
             flow,
             flown: strains.map(|strain| share * strain),
-            stored: self.elastic.energy_of(trace, &elastic) + hardened,
+            stored,
             released: flow.strain * (excess - 1.5 * mu * flow.strain) - flow.hardening,
         }
     }
 }
 
 impl<const D: usize> Material<D> for J2 {
-    const ENERGY_DEGREE: usize = 0;
     const MEMORY: usize = components(D) + 1;
     const YIELDS: bool = true;
     type Point = Point<D>;
@@ -172,13 +174,20 @@ impl<const D: usize> Material<D> for J2 {
     fn remember(&self, p: &Point<D>, memory: &mut [f64]) {
         let mut end = p.start;
         if p.flow.strain > 0.0 {
-            let mut shrinks = p.of.frame.squares;
+            let frame = &p.of.frame;
+            // F⁻¹ nₐ in the columns.
+            let pulled = frame.inverse_transposed.transposed() * frame.axes;
+            let mut shrinks = frame.squares;
             for (square, flown) in shrinks.iter_mut().zip(p.flown) {
                 *square *= exp_m1(-2.0 * flown);
             }
-            let inverse_transposed = p.of.frame.inverse_transposed;
-            let change = inverse_transposed.transposed() * p.of.frame.tensor(&shrinks) * inverse_transposed;
-            end.plastic += (change + change.transposed()) * 0.5;
+            for i in 0..D {
+                for j in i..D {
+                    for a in 0..D {
+                        end.plastic.0[i][j] += shrinks[a] * (pulled.0[i][a] * pulled.0[j][a]);
+                    }
+                }
+            }
             end.across += shrinks[2];
             end.alpha += p.flow.strain;
         }

@@ -51,13 +51,18 @@ pub(crate) fn ln_1p<T: Real>(x: T) -> [T; 2] {
     series_of_ln_1p(x)
 }
 
+/// Reciprocals in the series of artanh and of the exponential. Loops over indices are unrolled.
+const ODD: [f64; 5] = [1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0];
+const WHOLE: [f64; 9] =
+    [1.0 / 10.0, 1.0 / 9.0, 1.0 / 8.0, 1.0 / 7.0, 1.0 / 6.0, 1.0 / 5.0, 1.0 / 4.0, 1.0 / 3.0, 1.0 / 2.0];
+
 #[inline(always)]
 fn series_of_ln_1p<T: Real>(x: T) -> [T; 2] {
     let s = x / (T::of(2.0) + x);
     let t = s * s;
     let mut series = T::of(1.0 / 13.0);
-    for divisor in [11.0, 9.0, 7.0, 5.0, 3.0] {
-        series = T::of(1.0 / divisor) + t * series;
+    for k in 0..ODD.len() {
+        series = T::of(ODD[k]) + t * series;
     }
     let r = T::of(2.0) * s * t * series;
     [T::of(2.0) * s + r, x * s - r]
@@ -70,8 +75,8 @@ pub(crate) fn exp_m1(x: f64) -> f64 {
         return x.exp_m1();
     }
     let mut series = 1.0;
-    for divisor in [10.0, 9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0] {
-        series = 1.0 + x * series * (1.0 / divisor);
+    for k in 0..WHOLE.len() {
+        series = 1.0 + x * series * WHOLE[k];
     }
     x * series
 }

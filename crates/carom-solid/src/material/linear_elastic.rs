@@ -47,12 +47,12 @@ impl<const D: usize> Material<D> for LinearElastic {
 
     #[inline(always)]
     fn energy(&self, p: &Point<D>) -> f64 {
-        0.5 * self.cauchy(p).double_dot(&p.0)
+        0.5 * self.stress(p).double_dot(&p.0)
     }
 
     #[inline(always)]
     fn stress(&self, p: &Point<D>) -> Mat<D> {
-        self.cauchy(p)
+        self.stress_of(&p.0)
     }
 
     #[inline(always)]
@@ -68,7 +68,7 @@ impl<const D: usize> Material<D> for LinearElastic {
     }
 
     #[inline(always)]
-    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
+    fn cauchy(&self, p: &Point<D>, _: &Mat<D>) -> Mat<D> {
         self.stress_of(&p.0)
     }
 

@@ -58,8 +58,8 @@ impl<const D: usize, L: Material<D>> Material<D> for Incremental<'_, L> {
         self.law.change(point, df)
     }
 
-    fn cauchy(&self, point: &L::Point) -> Mat<D> {
-        self.law.cauchy(point)
+    fn cauchy(&self, point: &L::Point, h: &Mat<D>) -> Mat<D> {
+        self.law.cauchy(point, h)
     }
 
     fn lateral(&self, point: &L::Point) -> f64 {

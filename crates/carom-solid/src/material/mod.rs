@@ -41,7 +41,7 @@ pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use past::Past;
 pub use plane_stress::{PlaneStress, Thickness};
-pub(crate) use pointwise::{Evolution, Evolved, ModuliMats, Pointwise, Wanted};
+pub(crate) use pointwise::{Evolution, Evolved, ModuliMats, Pointwise};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub(crate) use volumetric::Mean;
 pub use yeoh::Yeoh;

@@ -27,10 +27,9 @@ pub struct NeoHookean {
     pub mu: f64,
 }
 
-/// F − I, F, F⁻ᵀ, F − F⁻ᵀ, J − 1, ln J, J − 1 − ln J.
+/// F − I, F⁻ᵀ, F − F⁻ᵀ, J − 1, ln J, J − 1 − ln J.
 pub struct Point<const D: usize, T = f64> {
     h: Mat<D, T>,
-    f: Mat<D, T>,
     inverse_transposed: Mat<D, T>,
     difference: Mat<D, T>,
     excess: T,
@@ -48,7 +47,6 @@ impl NeoHookean {
         let [ln_j, minus_ln] = ln_1p(excess);
         Ok(Point {
             h: *h,
-            f,
             inverse_transposed: (Mat::identity() + c) * inverse,
             difference: (*h - c + f * excess) * inverse,
             excess,
@@ -85,7 +83,6 @@ impl NeoHookean {
 }
 
 impl<const D: usize> Material<D> for NeoHookean {
-    const ENERGY_DEGREE: usize = 0;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -126,10 +123,6 @@ impl<const D: usize> Material<D> for NeoHookean {
     #[inline(always)]
     fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, _: usize) -> Result<InLanes<D>, NotPositive> {
         Ok(lanes(&self.change_of(&Self::kinematics(&four(h))?, &four(dh))))
-    }
-
-    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
-        self.stress(p) * p.f.transposed() * (1.0 / (1.0 + p.excess))
     }
 
     fn lateral(&self, p: &Point<D>) -> f64 {

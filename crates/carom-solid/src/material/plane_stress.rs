@@ -159,8 +159,8 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
             - Vector([left[0], left[1]]).outer(&Vector([right[0], right[1]])) * (1.0 / across)
     }
 
-    fn cauchy(&self, point: &Self::Point) -> Mat<2> {
-        within(&self.0.cauchy(&point.of))
+    fn cauchy(&self, point: &Self::Point, h: &Mat<2>) -> Mat<2> {
+        within(&self.0.cauchy(&point.of, &in_space(h, point.across)))
     }
 
     fn lateral(&self, _: &Self::Point) -> f64 {

@@ -16,17 +16,6 @@ use crate::points::{LANES, Lanes, Mats, get, set};
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
 
-/// What is asked of a law with memory.
-#[derive(Clone, Copy)]
-pub(crate) enum Wanted<'a, const D: usize> {
-    /// P.
-    Stress,
-    /// P and ∂P/∂F.
-    Tangent,
-    /// ∂P/∂F : dF.
-    Increment(&'a Mats<D>),
-}
-
 /// A step of points of a law with memory.
 pub(crate) struct Evolution<'a, const D: usize> {
     /// H at the start of the step, for a discrete gradient.
@@ -35,7 +24,8 @@ pub(crate) struct Evolution<'a, const D: usize> {
     pub(crate) count: usize,
     /// Memory of the points, one after the other.
     pub(crate) past: Past<'a>,
-    pub(crate) wanted: Wanted<'a, D>,
+    /// dF, where ∂P/∂F : dF is asked for in place of P.
+    pub(crate) change: Option<Mats<D>>,
 }
 
 /// Results of a step of points of a law with memory.
@@ -214,7 +204,7 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         let plastic_strain = self.plastic_strain(past.memory);
         Ok(PointState {
             det_f: self.volume_ratio(h, past),
-            cauchy: in_space(&self.cauchy(&point), self.lateral(&point)),
+            cauchy: in_space(&self.cauchy(&point, h), self.lateral(&point)),
             strain: in_space(&strain, across + 0.5 * across * across),
             plastic_strain,
             yielded: if plastic_strain > 0.0 { 1.0 } else { 0.0 },
@@ -250,21 +240,22 @@ fn evolve_point<const D: usize, L: Material<D>>(
 ) -> Result<(), NotPositive> {
     let h = get(&step.h, l);
     let before = step.before.as_ref().map(|before| get(before, l));
-    let end = match (step.wanted, before) {
-        (Wanted::Increment(dh), Some(before)) => {
-            set(&mut out.stress, l, &change_between(law, [&before, &h], &get(dh, l))?);
-            return Ok(());
-        }
-        (Wanted::Increment(dh), None) => {
-            set(&mut out.stress, l, &law.change(&law.at(&h)?, &get(dh, l)));
-            return Ok(());
-        }
-        (Wanted::Stress | Wanted::Tangent, Some(before)) => {
-            let found = between(law, [&before, &h])?;
+    if let Some(change) = &step.change {
+        let change = get(change, l);
+        let stress = match &before {
+            Some(before) => change_between(law, [before, &h], &change)?,
+            None => law.change(&law.at(&h)?, &change),
+        };
+        set(&mut out.stress, l, &stress);
+        return Ok(());
+    }
+    let end = match &before {
+        Some(before) => {
+            let found = between(law, [before, &h])?;
             set(&mut out.stress, l, &found.stress);
             found.end
         }
-        (Wanted::Stress | Wanted::Tangent, None) => {
+        None => {
             let point = law.at(&h)?;
             set(&mut out.stress, l, &law.stress(&point));
             point

@@ -210,7 +210,11 @@ macro_rules! by_principal_stress {
             p.of.change(df)
         }
 
-        fn cauchy(&self, p: &Self::Point) -> carom_algebra::Mat<$dimension> {
+        fn cauchy(
+            &self,
+            p: &Self::Point,
+            _: &carom_algebra::Mat<$dimension>,
+        ) -> carom_algebra::Mat<$dimension> {
             p.of.cauchy()
         }
 

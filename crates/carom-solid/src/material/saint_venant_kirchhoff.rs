@@ -74,10 +74,6 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
             + (fb.outer(&fa) + p.left * a.dot(b)) * self.mu
     }
 
-    fn cauchy(&self, p: &Point<D>) -> Mat<D> {
-        self.stress(p) * p.f.transposed() * (1.0 / p.det_f)
-    }
-
     fn lateral(&self, p: &Point<D>) -> f64 {
         self.lambda * p.e.trace() / p.det_f
     }

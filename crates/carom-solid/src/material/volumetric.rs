@@ -163,7 +163,7 @@ impl<const D: usize> Material<D> for Swelling {
         (a.outer(&b) - b.outer(&a)) * (1.0 / (1.0 + p.excess))
     }
 
-    fn cauchy(&self, _: &OfSwelling<D>) -> Mat<D> {
+    fn cauchy(&self, _: &OfSwelling<D>, _: &Mat<D>) -> Mat<D> {
         Mat::identity()
     }
 
@@ -225,8 +225,8 @@ impl<const D: usize> Material<D> for TraceOfStrain {
         Mat::identity() * a.dot(b)
     }
 
-    fn cauchy(&self, p: &OfStrain<D>) -> Mat<D> {
-        let f = Mat::identity() + p.h;
+    fn cauchy(&self, p: &OfStrain<D>, h: &Mat<D>) -> Mat<D> {
+        let f = Mat::identity() + *h;
         f * f.transposed() * (1.0 / p.det_f)
     }
 
@@ -264,7 +264,7 @@ impl<const D: usize> Material<D> for SmallSwelling {
         Mat::ZERO
     }
 
-    fn cauchy(&self, _: &f64) -> Mat<D> {
+    fn cauchy(&self, _: &f64, _: &Mat<D>) -> Mat<D> {
         Mat::identity()
     }
 

@@ -90,10 +90,6 @@ impl<const D: usize, L: Material<D> + 'static> Material<D> for Damage<L> {
         elastic - stress.apply(a).outer(&stress.apply(b)) * (intact / self.scale)
     }
 
-    fn cauchy(&self, point: &Self::Point) -> Mat<D> {
-        self.of.cauchy(&point.of) * self.intact(point.history[1])
-    }
-
     fn lateral(&self, point: &Self::Point) -> f64 {
         self.of.lateral(&point.of) * self.intact(point.history[1])
     }

@@ -16,13 +16,13 @@ fn free_across<L: Thickness + Copy>(law: &L, h: &Mat<2>) {
     let [[a, b], [c, d]] = h.0;
     let wide = Mat([[a, b, 0.0], [c, d, 0.0], [0.0, 0.0, across]]);
     let point = Material::<3>::at(law, &wide).unwrap();
-    let (cauchy, p) = (Material::<3>::cauchy(law, &point), Material::<3>::stress(law, &point));
+    let (cauchy, p) = (Material::<3>::cauchy(law, &point, &wide), Material::<3>::stress(law, &point));
     assert!(p.0[2][2].abs() < 1e-14, "{:e}", p.0[2][2]);
     let plane = PlaneStress(*law);
     let sheet = plane.at(h).unwrap();
     for i in 0..2 {
         for j in 0..2 {
-            assert_eq!(plane.cauchy(&sheet).0[i][j], cauchy.0[i][j]);
+            assert_eq!(plane.cauchy(&sheet, h).0[i][j], cauchy.0[i][j]);
         }
     }
     assert!((plane.volume_ratio(h, &Past::default()) - (1.0 + excess_det(&wide))).abs() < 1e-15);
@@ -101,7 +101,7 @@ fn extreme_stretches_have_a_thickness() {
 fn answers<L: Material<2>>(law: L) -> impl Fn(&Mat<2>) -> (Mat<2>, Mat<2>) {
     move |h| {
         let point = law.at(h).unwrap();
-        (law.stress(&point), law.cauchy(&point))
+        (law.stress(&point), law.cauchy(&point, h))
     }
 }
 
