@@ -249,17 +249,14 @@ fn evolve_point<const D: usize, L: Material<D>>(
         set(&mut out.stress, l, &stress);
         return Ok(());
     }
-    let end = match &before {
-        Some(before) => {
-            let found = between(law, [before, &h])?;
-            set(&mut out.stress, l, &found.stress);
-            found.end
-        }
-        None => {
-            let point = law.at(&h)?;
-            set(&mut out.stress, l, &law.stress(&point));
-            point
-        }
+    let end = if let Some(before) = &before {
+        let found = between(law, [before, &h])?;
+        set(&mut out.stress, l, &found.stress);
+        found.end
+    } else {
+        let point = law.at(&h)?;
+        set(&mut out.stress, l, &law.stress(&point));
+        point
     };
     out.stored[l] = law.law.energy(&end);
     out.dissipated[l] = law.law.dissipated(&end);
