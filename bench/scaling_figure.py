@@ -73,13 +73,12 @@ def figure(rows, floor):
     legend += [("#555", dash, f"{count} thread{'s' if count > 1 else ''}") for dash, count in zip(DASHES, threads)]
     legend += [("black", "1 3", "floor of explicit steps, 1 thread")]
     for k, (colour, dash, label) in enumerate(legend):
-        y = TOP + 14 + 17 * k
-        left = memory.offset + LEFT + 8
-        memory.line([(left, y - 4), (left + 26, y - 4)], colour, dash, 2)
-        memory.parts.append(text(left + 32, y, label, "start"))
+        x = LEFT + 132 * k
+        seconds.line([(x, HEIGHT + 8), (x + 26, HEIGHT + 8)], colour, dash, 2)
+        seconds.parts.append(text(x + 32, HEIGHT + 12, label, "start"))
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {2 * WIDTH} {HEIGHT}"'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {2 * WIDTH} {HEIGHT + 24}"'
         ' font-family="sans-serif" font-size="12">'
     )
-    background = f'<rect width="{2 * WIDTH}" height="{HEIGHT}" fill="white"/>'
+    background = f'<rect width="{2 * WIDTH}" height="{HEIGHT + 24}" fill="white"/>'
     return "\n".join([head, background, *seconds.parts, *memory.parts, "</svg>\n"])
