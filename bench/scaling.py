@@ -1,19 +1,25 @@
 #!/usr/bin/env python3
-"""Seconds and memory of explicit runs over their size and the number of threads: a table and a figure.
+"""Seconds and memory of runs over their size and the number of threads: the page of the book.
 
-    bench/scaling.py [--carom PATH] [--cells 1e3 1e4 1e5 1e6] [--threads 1 2] [--figure FILE.svg]
+    bench/scaling.py [--carom PATH] [--threads 1 2] [--largest 1e6] [--rounds 2] [--page DIRECTORY]
 
-A block of linear tetrahedra strikes a rigid plane with its whole lower face: contact in every step
-after the first, a row of the history per step, no fields, no page. Set-up is everything before the
-first step: reading, mesh, model, checks. The peak is the largest resident size of the process.
+Three jobs, all in contact, with a row of the history per step, no fields, no report:
 
-The floor of a step is the larger of two times, both measured in the same run by `cargo bench -p
-carom-run --bench explicit -- floors`: to move what any code must move per step at the bandwidth of a
-triad, and to evaluate the law alone for cells that stay in the cache. Steps are timed by the fastest
-of several runs, set-up by their median. It needs an idle machine.
+    explicit          a block of linear tetrahedra strikes a rigid plane with its whole lower face
+    implicit, plane   a disc of cubic triangles strikes a block
+    implicit, space   a ball of quadratic tetrahedra strikes a rigid plane
+
+Set-up is everything before the first step: reading, mesh, model, checks. The peak is the largest
+resident size of the process. The floor of an explicit step is the larger of two times, both
+measured in the same run by `cargo bench -p carom-run --bench explicit -- floors`: to move what any
+code must move per step at the bandwidth of a triad, and to evaluate the law alone for cells that
+stay in the cache. Runs with different numbers of threads take turns; steps are timed by the
+fastest run, set-up by the median. It needs an idle machine. With --page, the table and the figures
+of the book are replaced: scaling.md between its two markers, and scaling.svg.
 """
 
 import argparse
+import dataclasses
 import json
 import os
 import pathlib
@@ -21,16 +27,42 @@ import re
 import statistics
 import subprocess
 import tempfile
+import textwrap
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-CASE = """
-title = "A block of linear tetrahedra strikes a rigid plane"
-dimension = 3
-material = [{{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }}]
-contact = [{{ name = "floor", secondary = "block.bottom", primary = {{ plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }} }}]
-output = {{ fields_every = 0, checkpoint_every = 1000000 }}
+from scaling_figure import figure
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RUBBER = 'material = [{ name = "rubber", law = "neo-hookean", density = 0.25, lambda = 200.0, mu = 15.0 }]'
+QUIET = "output = { fields_every = 0, checkpoint_every = 1000000 }"
+FLOOR = "{ plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }"
+# Time of a pressure wave over a length of one: √(ρ/(λ + 2μ)).
+WAVE = (0.25 / (200.0 + 2 * 15.0)) ** 0.5
+MARKERS = "<!-- bench/scaling.py -->\n", "<!-- end of bench/scaling.py -->"
+
+
+@dataclasses.dataclass
+class Job:
+    """A case of a size, and how many steps of it are timed."""
+
+    name: str
+    cells: int
+    step: float
+    steps: int
+    scheme: str
+    text: str
+
+    def case(self):
+        end = self.step * self.steps
+        times = f"time = {{ end = {end!r}, step = {self.step!r}, scheme = {self.scheme} }}"
+        return "\n".join([f'title = "{self.name}"', RUBBER, QUIET, times, self.text])
+
+
+def block(cells):
+    n = max(2, round((cells / 6) ** (1 / 3)))
+    count = 6 * n**3
+    text = f"""dimension = 3
+contact = [{{ name = "floor", secondary = "block.bottom", primary = {FLOOR} }}]
 [[body]]
 name = "block"
 material = "rubber"
@@ -38,33 +70,83 @@ element = "Tet4"
 mass = "lumped"
 mesh = {{ shape = "box", min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0], cells = [{n}, {n}, {n}] }}
 velocity = [0.0, 0.0, -3.0]
-
-[time]
-end = {end!r}
-step = {step!r}
-scheme = {{ kind = "central-difference" }}
 """
-# Steps so short that no matrix is needed to know that they are stable: a third of a cell's edge per
-# time of a pressure wave, whose speed is √((λ + 2μ)/ρ).
-SHARE = 0.1
-SPEED = ((200.0 + 2 * 15.0) / 0.25) ** 0.5
-PER_BOX = 6
+    # Steps so short that no matrix is needed to know that they are stable.
+    step = 0.1 / n * WAVE
+    steps = int(min(400, max(20, 4e6 / count)))
+    return Job("explicit", count, step, steps, '{ kind = "central-difference" }', text)
 
 
-def floors():
-    """Nanoseconds per cell: bytes moved at the bandwidth of a triad, the law alone."""
-    command = ["cargo", "bench", "-q", "-p", "carom-run", "--bench", "explicit", "--", "floors"]
-    text = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    found = re.search(r"memory\s+([\d.]+) ns per cell.*arithmetic\s+([\d.]+) ns", text)
-    return {"memory": float(found[1]), "arithmetic": float(found[2])}
+def disc(rings):
+    text = f"""dimension = 2
+plane = "strain"
+contact = [{{ name = "strike", secondary = "disc.arc", primary = "block.top" }}]
+support = [{{ on = ["block.bottom"], fix = ["x", "y"] }}]
+[[body]]
+name = "disc"
+material = "rubber"
+element = "T10"
+mesh = {{ shape = "disc", radius = 1.0, center = [0.0, 1.001], size = {1.0001 / rings!r} }}
+velocity = [0.0, -3.0]
+[[body]]
+name = "block"
+material = "rubber"
+element = "T10"
+mesh = {{ shape = "rectangle", min = [-2.0, -1.0], max = [2.0, 0.0], cells = [{4 * rings}, {rings}] }}
+"""
+    cells = 6 * rings**2 + 8 * rings**2
+    # Of large meshes shorter steps, in which contact reaches as many nodes.
+    step = 1.875e-3 * min(1.0, 12.0 / rings)
+    steps = {4: 200, 12: 40}.get(rings, 6)
+    return Job("implicit, plane", cells, step, steps, '{ kind = "chung-hulbert", rho_inf = 0.5 }', text)
 
 
-def run(carom, n, steps, threads):
-    """Seconds of set-up and of a step, and the peak in MiB."""
-    step = SHARE / n / SPEED
+def ball(size, cells):
+    text = f"""dimension = 3
+contact = [{{ name = "floor", secondary = "ball.sphere", primary = {FLOOR} }}]
+[[body]]
+name = "ball"
+material = "rubber"
+element = "Tet10"
+mesh = {{ shape = "ball", radius = 0.5, center = [0.0, 0.0, 0.5001], size = {size} }}
+velocity = [0.0, 0.0, -3.0]
+"""
+    steps = 20 if cells < 1e4 else 6 if cells < 5e4 else 3
+    return Job("implicit, space", cells, 9.375e-4, steps, '{ kind = "chung-hulbert", rho_inf = 0.5 }', text)
+
+
+def jobs(largest):
+    all_of = [block(cells) for cells in (1e3, 1e4, 1e5, 1e6, 1e7)]
+    all_of += [disc(rings) for rings in (4, 12, 40)]
+    all_of += [ball(size, cells) for size, cells in ((0.2, 1500), (0.1, 10000), (0.05, 71000))]
+    return [job for job in all_of if job.cells <= 1.1 * largest]
+
+
+def counts(carom, job):
+    """Numbers of cells and of unknowns, as `carom check` says them."""
     with tempfile.TemporaryDirectory() as directory:
-        case = pathlib.Path(directory, "block.toml")
-        case.write_text(CASE.format(n=n, step=step, end=step * steps))
+        case = pathlib.Path(directory, "case.toml")
+        case.write_text(job.case())
+        text = subprocess.run([carom, "check", case], check=True, capture_output=True, text=True).stdout
+    found = re.findall(r"([\d_ ]+) cells, ([\d_ ]+) free dofs", text)
+    return [sum(int(number.replace(" ", "")) for number in of) for of in zip(*found)]
+
+
+def floors(benchmark):
+    """Nanoseconds per cell: bytes moved at the bandwidth of a triad, the law alone."""
+    compiling = ["cargo", "bench", "-q", "-p", "carom-run", "--bench", "explicit", "--"]
+    command = [*([benchmark] if benchmark else compiling), "floors"]
+    text = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    bandwidth = re.search(r"triad:\s+([\d.]+) GB/s", text)
+    found = re.search(r"memory\s+([\d.]+) ns per cell.*arithmetic\s+([\d.]+) ns", text)
+    return {"bandwidth": float(bandwidth[1]), "memory": float(found[1]), "arithmetic": float(found[2])}
+
+
+def run(carom, job, threads):
+    """Seconds of set-up and of a step, the peak in MiB, and the history."""
+    with tempfile.TemporaryDirectory() as directory:
+        case = pathlib.Path(directory, "case.toml")
+        case.write_text(job.case())
         out = pathlib.Path(directory, "run")
         command = [carom, "run", case, "--out", out, "--no-report", "--quiet", "--threads", str(threads)]
         began = time.monotonic()
@@ -72,109 +154,100 @@ def run(carom, n, steps, threads):
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.monotonic() - began
         if status != 0:
-            raise SystemExit(f"{n}³ boxes: exit status {status}")
+            raise SystemExit(f"{job.name}, {job.cells} cells: exit status {status}")
         manifest = json.loads((out / "manifest.json").read_text())
-        timings = manifest["timings"]
+        total = manifest["timings"]["total"]
         return {
-            "setup": seconds - timings["total"],
-            "step": timings["total"] / steps,
+            "setup": seconds - total,
+            "step": total / job.steps,
             "peak": usage.ru_maxrss / 1024,
+            "history": (out / "history.csv").read_bytes(),
         }
 
 
-def measure(carom, cells, threads, rounds):
-    n = max(2, round((cells / PER_BOX) ** (1 / 3)))
-    count = PER_BOX * n**3
-    steps = int(min(400, max(20, 4e6 / count)))
-    done = [run(carom, n, steps, threads) for _ in range(rounds)]
-    return {
-        "cells": count,
-        "threads": threads,
-        "setup": statistics.median(one["setup"] for one in done),
-        "step": min(one["step"] for one in done),
-        "peak": max(one["peak"] for one in done),
-    }
+def measure(carom, job, threads, rounds):
+    """A row for each number of threads, measured in turn; their histories must have the same bits."""
+    cells, unknowns = counts(carom, job)
+    done = {count: [] for count in threads}
+    for _ in range(rounds):
+        for count in threads:
+            done[count].append(run(carom, job, count))
+    histories = {one["history"] for runs in done.values() for one in runs}
+    if len(histories) != 1:
+        raise SystemExit(f"{job.name}, {job.cells} cells: the history depends on the number of threads")
+    return [
+        {
+            "job": job.name,
+            "cells": cells,
+            "unknowns": unknowns,
+            "threads": count,
+            "setup": statistics.median(one["setup"] for one in runs),
+            "step": min(one["step"] for one in runs),
+            "peak": max(one["peak"] for one in runs),
+        }
+        for count, runs in done.items()
+    ]
 
 
 def table(rows, floor):
-    bound = max(floor.values())
-    first = {row["cells"]: row["step"] for row in rows if row["threads"] == min(r["threads"] for r in rows)}
-    print(f"floor: {floor['memory']:.1f} ns per cell to move the data, {floor['arithmetic']:.1f} ns for the law alone\n")
-    print("| cells | threads | set-up | step | per cell | of the floor | against one thread | peak | per cell |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    bound = max(floor["memory"], floor["arithmetic"])
+    alone = {(row["job"], row["cells"]): row["step"] for row in rows if row["threads"] == 1}
+    measured = (
+        f"Triad {floor['bandwidth']:.1f} GB/s; floor of an explicit step {floor['memory']:.1f} ns per cell to move the"
+        f" data, {floor['arithmetic']:.1f} ns for the law alone; {os.cpu_count()} cores; {time.strftime('%-d %B %Y')}."
+    )
+    lines = [
+        *textwrap.wrap(measured, 100),
+        "",
+        "| | cells | unknowns | threads | set-up | step | per cell | of the floor | against one thread | peak | per cell |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
     for row in rows:
-        per_cell = 1e9 * row["step"] / row["cells"]
-        print(
-            f"| {row['cells']:_} | {row['threads']} | {row['setup']:.2f} s | {1e3 * row['step']:.3g} ms | {per_cell:.1f} ns"
-            f" | {per_cell / bound:.1f} | {first[row['cells']] / row['step']:.2f} | {row['peak']:.0f} MiB"
-            f" | {row['peak'] * 2**20 / row['cells']:.0f} B |".replace("_", " ")
+        each = 1e9 * row["step"] / row["cells"]
+        against = alone.get((row["job"], row["cells"]))
+        cells, unknowns = (f"{row[of]:_}".replace("_", " ") for of in ("cells", "unknowns"))
+        floors = f"{each / bound:.1f}" if row["job"] == "explicit" else ""
+        speed = f"{against / row['step']:.2f}" if against else ""
+        lines.append(
+            f"| {row['job']} | {cells} | {unknowns} | {row['threads']} | {row['setup']:.2f} s | {short(row['step'])}"
+            f" | {short(1e-9 * each)} | {floors} | {speed} | {row['peak']:.0f} MiB"
+            f" | {row['peak'] * 2**20 / row['cells']:.0f} B |"
         )
+    return "\n".join(lines) + "\n"
 
 
-def figure(rows, floor, path):
-    """Nanoseconds per cell and step over the number of cells, with the floor."""
-    import math
-
-    width, height, left, bottom, top = 640, 360, 60, 50, 20
-    bound = max(floor.values())
-    values = [1e9 * row["step"] / row["cells"] for row in rows] + [bound]
-    low = 10 ** math.floor(math.log10(min(values)))
-    high = 10 ** math.ceil(math.log10(max(values)))
-    sizes = [row["cells"] for row in rows]
-    first = 10 ** math.floor(math.log10(min(sizes)))
-    last = 10 ** math.ceil(math.log10(max(sizes)))
-
-    def x(cells):
-        return left + (width - left - 20) * math.log(cells / first) / math.log(last / first)
-
-    def y(value):
-        return height - bottom - (height - bottom - top) * math.log(value / low) / math.log(high / low)
-
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">',
-             f'<rect width="{width}" height="{height}" fill="white"/>']
-    power = first
-    while power <= last:
-        parts.append(f'<line x1="{x(power):.1f}" x2="{x(power):.1f}" y1="{top}" y2="{height - bottom}" stroke="#ddd"/>')
-        parts.append(f'<text x="{x(power):.1f}" y="{height - bottom + 18}" text-anchor="middle">10<tspan dy="-5" font-size="9">{round(math.log10(power))}</tspan></text>')
-        power *= 10
-    value = low
-    while value <= high:
-        parts.append(f'<line x1="{left}" x2="{width - 20}" y1="{y(value):.1f}" y2="{y(value):.1f}" stroke="#ddd"/>')
-        parts.append(f'<text x="{left - 8}" y="{y(value) + 4:.1f}" text-anchor="end">{value:g}</text>')
-        value *= 10
-    parts.append(f'<text x="{(left + width - 20) / 2}" y="{height - 10}" text-anchor="middle">cells</text>')
-    middle = (top + height - bottom) / 2
-    parts.append(f'<text x="16" y="{middle}" text-anchor="middle" transform="rotate(-90 16 {middle})">ns per cell and step</text>')
-    colours = ["#1f4e9c", "#c8501e", "#2d7d46", "#7b3f9d", "#555555"]
-    threads = sorted({row["threads"] for row in rows})
-    for colour, count in zip(colours, threads):
-        points = [(x(row["cells"]), y(1e9 * row["step"] / row["cells"])) for row in rows if row["threads"] == count]
-        line = " ".join(f"{a:.1f},{b:.1f}" for a, b in points)
-        parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
-        parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{colour}"/>' for a, b in points]
-        label = "1 thread" if count == 1 else f"{count} threads"
-        place = top + 16 + 18 * threads.index(count)
-        parts.append(f'<text x="{width - 30}" y="{place}" text-anchor="end" fill="{colour}">{label}</text>')
-    parts.append(f'<line x1="{left}" x2="{width - 20}" y1="{y(bound):.1f}" y2="{y(bound):.1f}" stroke="black" stroke-dasharray="6 4"/>')
-    parts.append(f'<text x="{left + 6}" y="{y(bound) - 6:.1f}">floor of one thread, {bound:.1f} ns</text>')
-    parts.append("</svg>\n")
-    pathlib.Path(path).write_text("\n".join(parts))
+def short(seconds):
+    """A time in the unit in which it is a short number."""
+    for unit, name in ((1e-6, "ns"), (1e-3, "µs"), (1.0, "ms")):
+        if seconds < unit:
+            return f"{seconds / unit * 1e3:.3g} {name}"
+    return f"{seconds:.3g} s"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--carom", default=ROOT / "target/release/carom", help="the program")
-    parser.add_argument("--cells", type=float, nargs="+", default=[1e3, 1e4, 1e5, 1e6])
     parser.add_argument("--threads", type=int, nargs="+", default=[1, 2])
-    parser.add_argument("--rounds", type=int, default=3, help="runs of each")
-    parser.add_argument("--floor", type=float, nargs=2, help="the two floors in ns per cell, if they are known")
-    parser.add_argument("--figure", help="file of the figure")
+    parser.add_argument("--largest", type=float, default=1e6, help="cells of the largest job")
+    parser.add_argument("--rounds", type=int, default=2, help="runs of each")
+    parser.add_argument("--benchmark", help="the benchmark `explicit`, if it is compiled already")
+    parser.add_argument("--page", type=pathlib.Path, help="directory of scaling.md and scaling.svg")
     options = parser.parse_args()
-    floor = dict(zip(("memory", "arithmetic"), options.floor)) if options.floor else floors()
-    rows = [measure(options.carom, cells, threads, options.rounds) for cells in options.cells for threads in options.threads]
-    table(rows, floor)
-    if options.figure:
-        figure(rows, floor, options.figure)
+    floor = floors(options.benchmark)
+    rows = []
+    for job in jobs(options.largest):
+        rounds = options.rounds if job.cells < 2e5 else 1
+        rows += measure(options.carom, job, options.threads, rounds)
+        print(table(rows[-len(options.threads):], floor).splitlines()[-1], flush=True)
+    text = table(rows, floor)
+    print(text)
+    if options.page:
+        page = options.page / "scaling.md"
+        before, rest = page.read_text().split(MARKERS[0])
+        after = rest.split(MARKERS[1])[1]
+        page.write_text(before + MARKERS[0] + "\n" + text + "\n" + MARKERS[1] + after)
+        bound = max(floor["memory"], floor["arithmetic"])
+        (options.page / "scaling.svg").write_text(figure(rows, bound))
 
 
 if __name__ == "__main__":

@@ -24,6 +24,9 @@ use crate::precision::{Entry, Precision};
 use crate::substitution::Solver;
 use crate::threads::Threads;
 
+/// Unknowns that a thread permutes.
+const BLOCK: usize = 4096;
+
 /// The entries of a factor, for the matrix multiplied by the square of `scale`.
 struct Entries<T> {
     factors: Aligned<T>,
@@ -185,9 +188,12 @@ impl Condensed {
             Numbers::Double(entries) => self.solver(entries).backward(&self.elimination.root, x),
             Numbers::Single(entries) => self.solver(entries).backward(&self.elimination.root, x),
         }
-        for (value, &position) in out.iter_mut().zip(&self.elimination.positions) {
-            *value = x[position as usize];
-        }
+        let positions = &self.elimination.positions;
+        self.threads.for_each_block(out, BLOCK, |first, out| {
+            for (value, &position) in out.iter_mut().zip(&positions[first..]) {
+                *value = x[position as usize];
+            }
+        });
     }
 
     /// The last unknowns of a vector in elimination order.

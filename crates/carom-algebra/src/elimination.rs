@@ -98,13 +98,19 @@ impl Elimination {
         };
         let mut is_last = vec![false; n];
         last.iter().for_each(|&i| is_last[i] = true);
+        // Without couplings any order will do, and nothing is worth a thread of its own.
+        let is_diagonal = pattern.is_diagonal();
         let whole = groups.iter().max().map_or(0, |g| g + 1);
         let merged: Vec<usize> = (0..n).map(|i| if is_last[i] { whole } else { groups[i] }).collect();
         let mut names = merged.clone();
         names.sort_unstable();
         names.dedup();
         let merged: Vec<usize> = merged.iter().map(|g| names.partition_point(|name| name < g)).collect();
-        let forward = grouped_ordering(pattern, &merged).map_err(engine)?;
+        let forward = if is_diagonal {
+            (0..n).collect()
+        } else {
+            grouped_ordering(pattern, &merged).map_err(engine)?
+        };
         let inner = n - last.len();
         let mut order: Vec<u32> = forward.iter().filter(|&&i| !is_last[i]).map(|&i| i as u32).collect();
         order.extend(forward.iter().filter(|&&i| is_last[i]).map(|&i| i as u32));
@@ -112,7 +118,8 @@ impl Elimination {
         let EliminationTree { parents, counts } =
             Upper::new(pattern, &inverse(&order), inner).tree().map_err(engine)?;
         let parent = |j: usize| usize::try_from(parents[j]).ok().filter(|&p| p < inner);
-        let Partition { order: sorted, tree } = cut(inner, parent, |j| u64::from(counts[j]));
+        let weight = |j: usize| if is_diagonal { 0 } else { u64::from(counts[j]) };
+        let Partition { order: sorted, tree } = cut(inner, parent, weight);
         let moved: Vec<u32> = sorted.iter().map(|&k| order[k as usize]).collect();
         order[..inner].copy_from_slice(&moved);
         let place = inverse(&order);

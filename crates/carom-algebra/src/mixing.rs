@@ -13,8 +13,9 @@
 use std::collections::VecDeque;
 
 use crate::sums::dot;
+use crate::threads::Threads;
 
-/// Length of the blocks in which vectors are traversed.
+/// Length of the blocks in which vectors are traversed, so that each is read once.
 const BLOCK: usize = 2048;
 /// Pivot, relative to the square of a direction, below which the direction depends linearly on the
 /// others.
@@ -46,9 +47,15 @@ pub struct Mixing {
     changes: VecDeque<Change>,
     /// Memory of discarded changes, for reuse.
     spare: Vec<Change>,
+    threads: Threads,
 }
 
 impl Mixing {
+    /// A history that is computed on threads, on whose number the result does not depend.
+    pub fn on(threads: &Threads) -> Self {
+        Self { threads: threads.clone(), ..Self::default() }
+    }
+
     /// Clears the history, which is meaningless for another factor or other contacts.
     pub fn restart(&mut self) {
         self.begun = false;
@@ -63,17 +70,17 @@ impl Mixing {
         let mut right = self.record(&correction, depth);
         let product = |i: usize, j: usize| self.changes[i.min(j)].products[i.abs_diff(j)];
         least_squares(product, &mut right);
+        let changes = &self.changes;
         for (k, step) in correction.into_iter().enumerate() {
             self.taken[k].resize(step.len(), 0.0);
-            for range in blocks(step.len()) {
-                let step = &mut step[range.clone()];
-                for (share, change) in right.iter().zip(&self.changes) {
-                    step.iter_mut()
-                        .zip(&change.both[k][range.clone()])
-                        .for_each(|(step, both)| *step -= share * both);
+            let blocks = step.chunks_mut(BLOCK).zip(self.taken[k].chunks_mut(BLOCK));
+            self.threads.for_each(blocks, |block, (step, taken)| {
+                for (share, change) in right.iter().zip(changes) {
+                    let both = &change.both[k][block * BLOCK..];
+                    step.iter_mut().zip(both).for_each(|(step, both)| *step -= share * both);
                 }
-                self.taken[k][range].copy_from_slice(step);
-            }
+                taken.copy_from_slice(step);
+            });
         }
     }
 
@@ -83,55 +90,55 @@ impl Mixing {
         let full = self.changes.len() == depth;
         let oldest = if self.begun && full { self.changes.pop_back() } else { self.spare.pop() };
         let mut new = oldest.unwrap_or_default();
-        let mut products = [0.0, 0.0];
-        let mut right = vec![[0.0, 0.0]; self.changes.len()];
-        new.products.clear();
         for (k, now) in correction.iter().enumerate() {
-            self.last[k].resize(now.len(), 0.0);
-            self.taken[k].resize(now.len(), 0.0);
-            new.correction[k].resize(now.len(), 0.0);
-            new.both[k].resize(now.len(), 0.0);
-            for range in blocks(now.len()) {
-                let now = &now[range.clone()];
-                let last = &mut self.last[k][range.clone()];
-                let change = &mut new.correction[k][range.clone()];
-                let both = &mut new.both[k][range.clone()];
-                let taken = &self.taken[k][range.clone()];
-                for i in 0..now.len() {
-                    change[i] = now[i] - last[i];
-                    both[i] = change[i] + taken[i];
-                    last[i] = now[i];
-                }
-                // The norm is that of positions.
-                if k == 0 {
-                    add(&mut products, change, change, now);
-                    for (sums, old) in right.iter_mut().zip(&self.changes) {
-                        add(sums, &old.correction[0][range.clone()], change, now);
-                    }
-                }
+            for vector in [&mut self.last[k], &mut self.taken[k], &mut new.correction[k], &mut new.both[k]] {
+                vector.resize(now.len(), 0.0);
             }
         }
+        // The norm is that of positions.
+        let [positions, multipliers] = correction;
+        let count = self.changes.len() + 1;
+        let mut of_blocks = vec![[0.0; 2]; count * positions.len().div_ceil(BLOCK)];
+        let Self { changes, last, taken, threads, .. } = self;
+        let Change { correction: change, both, .. } = &mut new;
+        let blocks = (last[0].chunks_mut(BLOCK).zip(change[0].chunks_mut(BLOCK)))
+            .zip(both[0].chunks_mut(BLOCK))
+            .zip(of_blocks.chunks_mut(count));
+        threads.for_each(blocks, |block, (((last, change), both), products)| {
+            let range = block * BLOCK..block * BLOCK + last.len();
+            let now = &positions[range.clone()];
+            difference(now, &taken[0][range.clone()], [last, change, both]);
+            products[0] = [dot(change, change), dot(change, now)];
+            for (products, old) in products[1..].iter_mut().zip(&*changes) {
+                let old = &old.correction[0][range.clone()];
+                *products = [dot(old, change), dot(old, now)];
+            }
+        });
+        difference(multipliers, &taken[1], [&mut last[1], &mut change[1], &mut both[1]]);
         if !std::mem::replace(&mut self.begun, true) {
             self.spare.push(new);
             return Vec::new();
         }
-        new.products.push(products[0]);
-        new.products.extend(right.iter().map(|sums| sums[0]));
+        let mut sums = vec![[0.0; 2]; count];
+        for of_block in of_blocks.chunks_exact(count) {
+            for (sum, product) in sums.iter_mut().zip(of_block) {
+                (0..2).for_each(|i| sum[i] += product[i]);
+            }
+        }
+        new.products.clear();
+        new.products.extend(sums.iter().map(|[of_change, _]| of_change));
         self.changes.push_front(new);
-        std::iter::once(products[1]).chain(right.into_iter().map(|sums| sums[1])).collect()
+        sums.into_iter().map(|[_, of_correction]| of_correction).collect()
     }
 }
 
-/// Ranges of blocks of a vector that fit into the processor's caches, so that each vector is read
-/// once.
-fn blocks(length: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
-    (0..length).step_by(BLOCK).map(move |first| first..(first + BLOCK).min(length))
-}
-
-/// Adds the scalar products a·b and a·c to two sums.
-fn add(sums: &mut [f64; 2], a: &[f64], b: &[f64], c: &[f64]) {
-    sums[0] += dot(a, b);
-    sums[1] += dot(a, c);
+/// Stores a correction as the last one, its change, and this change with that of the iterate.
+fn difference(now: &[f64], taken: &[f64], [last, change, both]: [&mut [f64]; 3]) {
+    for i in 0..now.len() {
+        change[i] = now[i] - last[i];
+        both[i] = change[i] + taken[i];
+        last[i] = now[i];
+    }
 }
 
 /// Overwrites the right-hand side of normal equations with their solution, by elimination; unknowns

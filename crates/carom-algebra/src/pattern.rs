@@ -21,19 +21,37 @@ impl Pattern {
     /// Builds the pattern of size `n` from entries in any order, of either triangle, possibly
     /// repeated. The diagonal is always stored.
     pub fn from_entries(n: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Self {
-        let mut columns: Vec<Vec<usize>> = (0..n).map(|i| vec![i]).collect();
-        for (i, j) in entries {
-            columns[i.min(j)].push(i.max(j));
+        let ordered = |(i, j): (usize, usize)| [i.min(j) as u32, i.max(j) as u32];
+        let entries: Vec<[u32; 2]> = entries.into_iter().map(ordered).collect();
+        let mut starts = vec![0; n + 1];
+        entries.iter().for_each(|[column, _]| starts[*column as usize + 1] += 1);
+        (0..n).for_each(|j| starts[j + 1] += starts[j] + 1);
+        let mut rows = vec![0; starts[n]];
+        let mut next = starts.clone();
+        let diagonal = (0..n as u32).map(|j| [j, j]);
+        for [column, row] in entries.into_iter().chain(diagonal) {
+            let place = &mut next[column as usize];
+            rows[*place] = row as usize;
+            *place += 1;
         }
-        let mut pattern = Self { starts: Vec::with_capacity(n + 1), rows: Vec::new() };
-        pattern.starts.push(0);
-        for column in &mut columns {
+        let mut kept = 0;
+        for j in 0..n {
+            let begin = std::mem::replace(&mut starts[j], kept);
+            let column = &mut rows[begin..next[j]];
             column.sort_unstable();
-            column.dedup();
-            pattern.rows.extend_from_slice(column);
-            pattern.starts.push(pattern.rows.len());
+            let mut last = None;
+            for k in begin..next[j] {
+                let row = rows[k];
+                if last.replace(row) != Some(row) {
+                    rows[kept] = row;
+                    kept += 1;
+                }
+            }
         }
-        pattern
+        starts[n] = kept;
+        rows.truncate(kept);
+        rows.shrink_to_fit();
+        Self { starts, rows }
     }
 
     /// Number of rows and columns.

@@ -2,13 +2,18 @@
 //! order of the cells, so that sums are bitwise independent of the number of threads.
 
 use carom_algebra::Threads;
-use carom_solid::Inverted;
+use carom_solid::{Inverted, LANES};
 
 /// Cells computed while those before are added: enough to share among threads, few enough for their
 /// caches.
 const BLOCK: usize = 8192;
 /// Numbers of a block, at most.
 const NUMBERS: usize = 1 << 17;
+/// Blocks into which the cells of a small body are divided: all but the last are added while others
+/// are computed.
+const BLOCKS: usize = 4;
+/// Tasks of a block, at least.
+const TASKS: usize = 8;
 /// Cells per task of a thread, at most.
 const SHARE: usize = 64;
 /// Cells below which a second thread does not pay.
@@ -51,8 +56,13 @@ pub(crate) fn for_each(
         add(block.first, &block.locals);
     };
     let is_serial = threads.count() == 1 || count < FEW;
-    let share = (NEAR / numbers).clamp(1, SHARE);
-    let size = if is_serial { share } else { (NUMBERS / numbers).clamp(1, BLOCK) };
+    let near = (NEAR / numbers).clamp(1, SHARE);
+    let (size, share) = if is_serial {
+        (near, near)
+    } else {
+        let size = (NUMBERS / numbers).min(count.div_ceil(BLOCKS).next_multiple_of(LANES)).clamp(1, BLOCK);
+        (size, (size / TASKS).next_multiple_of(LANES).clamp(1, near))
+    };
     let [mut done, mut next] = [Block::default(), Block::default()];
     for first in (0..count).step_by(size) {
         next.resize(first, size.min(count - first), numbers);

@@ -25,7 +25,7 @@
 
 use std::sync::Arc;
 
-use carom_algebra::Vector;
+use carom_algebra::{Threads, Vector};
 
 use super::Kinematics;
 use super::facets::OnFacet;
@@ -72,6 +72,7 @@ pub struct BothSides<K> {
     /// them; none at its other nodes.
     corners: Vec<Vec<OnFacet<[f64; 2]>>>,
     all: Vec<usize>,
+    threads: Threads,
 }
 
 impl BothSides<NodeToFacet> {
@@ -108,7 +109,7 @@ impl<K: OneWay> BothSides<K> {
             _ => Vec::new(),
         };
         let corners = reverse.secondary().iter().enumerate().map(corner).collect();
-        Self { forward, reverse, corners, all }
+        Self { forward, reverse, corners, all, threads: Threads::one() }
     }
 
     /// The direction of contact to which a node belongs, and the index of the node in it.
@@ -145,13 +146,22 @@ impl<K: OneWay> BothSides<K> {
     }
 
     /// Applies a function to the pairs of each direction of contact, numbered within that
-    /// direction.
-    fn each(&self, pairing: &mut Pairing, mut of: impl FnMut(&K, &mut Pairing) -> bool) -> bool {
+    /// direction, and collects their events.
+    fn each(
+        &self,
+        pairing: &mut Pairing,
+        events: &mut Vec<PairEvent>,
+        of: impl Fn(&K, &mut Pairing, &mut Vec<PairEvent>) -> bool + Sync,
+    ) -> bool {
         let count = self.forward.secondary().len();
         let mut reverse = pairing.split_off(count);
-        let changed = of(&self.forward, pairing) | of(&self.reverse, &mut reverse);
+        let mut of_reverse = Vec::new();
+        let (forth, back) = self
+            .threads
+            .join(|| of(&self.forward, pairing, events), || of(&self.reverse, &mut reverse, &mut of_reverse));
+        events.append(&mut of_reverse);
         pairing.append(reverse, count);
-        changed
+        forth | back
     }
 }
 
@@ -163,6 +173,10 @@ impl<K: OneWay> Kinematics for BothSides<K> {
     fn allowed(&self, node: usize) -> f64 {
         let (direction, node) = self.direction(node);
         direction.allowed(node)
+    }
+
+    fn on(&mut self, threads: &Threads) {
+        self.threads = threads.clone();
     }
 
     fn keep(&mut self, depths: &[f64]) {
@@ -206,7 +220,9 @@ impl<K: OneWay> Kinematics for BothSides<K> {
         pairing: &mut Pairing,
         events: &mut Vec<PairEvent>,
     ) -> bool {
-        self.each(pairing, |direction, pairing| direction.search(before, now, pairing, events))
+        self.each(pairing, events, |direction, pairing, events| {
+            direction.search(before, now, pairing, events)
+        })
     }
 
     fn met(&self, nodes: &[usize], before: &[f64], now: &[f64]) -> Vec<Option<f64>> {
@@ -223,11 +239,14 @@ impl<K: OneWay> Kinematics for BothSides<K> {
     }
 
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {
-        self.forward.passed(before, now, bounce).or_else(|| self.reverse.passed(before, now, bounce))
+        let (forth, back) = self
+            .threads
+            .join(|| self.forward.passed(before, now, bounce), || self.reverse.passed(before, now, bounce));
+        forth.or(back)
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
-        self.each(pairing, |direction, pairing| direction.update_facets(now, pairing, events))
+        self.each(pairing, events, |direction, pairing, events| direction.update_facets(now, pairing, events))
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {

@@ -3,6 +3,8 @@
 //! sharp edges against sharp edges, the edges of the primary being numbered after its facets; in
 //! the plane convex corners and round parts of an obstacle against facets.
 
+use carom_algebra::Threads;
+
 use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::Tip;
 use super::space::{EdgeToEdge, NodeToPatch};
@@ -82,6 +84,11 @@ impl<N: Kinematics, B: Kinematics> Kinematics for Joined<N, B> {
     fn kept(&self, node: usize) -> f64 {
         let (kind, node) = self.of(node);
         kind.kept(node)
+    }
+
+    fn on(&mut self, threads: &Threads) {
+        self.nodes.on(threads);
+        self.between.on(threads);
     }
 
     fn kept_at_nodes(&self) -> Vec<(usize, f64)> {

@@ -55,6 +55,8 @@ pub use swept::{Crossings, SpaceHit, Swept, SweptEdges, SweptPatch, SweptTest};
 pub use tip_to_facet::TipToFacet;
 pub(crate) use way::amplification;
 
+use carom_algebra::Threads;
+
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -93,6 +95,9 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     fn allowed(&self, _node: usize) -> f64 {
         0.0
     }
+
+    /// Shares work among threads, on whose number no result depends.
+    fn on(&mut self, _threads: &Threads) {}
 
     /// Adds to the gap of every secondary node, by index, an initial depth: an overlap that is
     /// kept, or not yet closed, or the deviation of straight facets from a curved side.

@@ -15,6 +15,9 @@ use crate::rejected::Rejected;
 /// Numbers per block of positions: a multiple of every dimension.
 const BLOCK: usize = 6;
 
+/// Cells whose paths a thread examines at once.
+const SHARE: usize = 64;
+
 /// Positions of the last check of each body. A cache.
 #[derive(Debug, Default)]
 pub(crate) struct ValidCells {
@@ -114,12 +117,17 @@ fn check_paths(model: &Model, part: &BodyInstance, before: &[f64], now: &[f64]) 
     let add = cells::added_one_by_one(1, add);
     cells::for_each(&model.threads, body.mesh().cell_count(), 1, compute, add)
         .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;
-    for cell in left {
-        if let Some(theta) = body.cell_lost_between(cell, before, now) {
-            return Err(Rejected::InvertedOnTheWay { body: part.name.clone(), cell, theta });
-        }
+    let mut lost = vec![None; left.len()];
+    model.threads.for_each_block(&mut lost, SHARE, |first, lost| {
+        let cells = left[first..].iter();
+        lost.iter_mut()
+            .zip(cells)
+            .for_each(|(lost, cell)| *lost = body.cell_lost_between(*cell, before, now));
+    });
+    match left.into_iter().zip(lost).find_map(|(cell, lost)| Some((cell, lost?))) {
+        Some((cell, theta)) => Err(Rejected::InvertedOnTheWay { body: part.name.clone(), cell, theta }),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// The smallest margin of a body's cells.

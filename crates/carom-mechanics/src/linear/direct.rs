@@ -29,6 +29,8 @@ const LARGE: usize = 10_000;
 /// Largest ratio of stiffness to mass, (ωΔt)² times a factor, on the diagonal of a single-precision
 /// factor.
 const STIFF: f64 = 1e3;
+/// Dofs that a thread copies.
+const BLOCK: usize = 4096;
 /// Number of stored structures.
 const REMEMBERED: usize = 2;
 /// Stiffness added along the rows, as a multiple of theirs: enough to outweigh the curvature terms
@@ -214,7 +216,15 @@ impl Preconditioner for Direct {
     }
 
     fn form(&mut self, model: &Model, point: &Arc<Point>, double: bool) -> Result<bool, Rejected> {
-        self.assemble(model, &point.configuration())?;
+        let Self { matrices, diagonals, latest, .. } = self;
+        let matrices = built(matrices, model);
+        let pattern = matrices.pattern.clone();
+        let (diagonal, ordered) = model.threads.join(
+            || matrices.assemble(model, &point.configuration()),
+            || elimination(latest, model, &pattern, &point.boundary),
+        );
+        diagonals[1] = diagonal?;
+        ordered?;
         if point.follower != 0.0 {
             built(&mut self.matrices, model).assemble_loads(model, point.time, &point.at)?;
         }
@@ -227,7 +237,7 @@ impl Preconditioner for Direct {
             (&*pattern, &diagonals[0])
         } else {
             let Matrices { pattern, mass, .. } = built(matrices, model);
-            (&*pattern, &*mass)
+            (&**pattern, &*mass)
         };
         let current = self.point.as_ref().filter(|point| spans(model, &point.boundary, rows));
         let boundary = current.map_or_else(|| interface(model, rows), |point| point.boundary.clone());
@@ -300,8 +310,10 @@ impl Preconditioner for Direct {
     ) -> Result<(), LinearError> {
         let unknowns = model.free.len();
         let mut x = std::mem::take(&mut self.solution);
-        x.clear();
-        x.extend(model.free.iter().map(|&dof| forces[dof]));
+        x.resize(unknowns, 0.0);
+        model.threads.for_each_block(&mut x, BLOCK, |first, x| {
+            x.iter_mut().zip(&model.free[first..]).for_each(|(x, dof)| *x = forces[*dof]);
+        });
         for point in model.points.iter() {
             for dof in point.node * model.dimension..(point.node + 1) * model.dimension {
                 model.moved_by(dof).for_each(|(unknown, weight)| x[unknown] += weight * forces[dof]);
@@ -309,10 +321,11 @@ impl Preconditioner for Direct {
         }
         x.extend(self.springs.iter().zip(gaps).filter(|(is_spring, _)| !**is_spring).map(|(_, gap)| *gap));
         self.solve_all(unknowns, &mut x);
-        increment.fill(0.0);
-        for (value, &dof) in x.iter().zip(&model.free) {
-            increment[dof] = *value;
-        }
+        model.threads.for_each_block(increment, BLOCK, |first, increment| {
+            for (value, unknown) in increment.iter_mut().zip(&model.unknown[first..]) {
+                *value = x.get(*unknown).copied().unwrap_or(0.0);
+            }
+        });
         model.points.carry(increment);
         multipliers.clear();
         let mut found = x[unknowns..].iter().copied();

@@ -6,6 +6,8 @@
 //! between nodes is needed: an explicit run, whose mass is lumped, has none. It excludes contact,
 //! whose rows act on the last unknowns of a factor (`direct.rs`).
 
+use std::sync::Arc;
+
 use carom_algebra::Pattern;
 
 use crate::linear::tangents::{coupled, each_tangent};
@@ -20,7 +22,7 @@ const CARRIED: u32 = u32::MAX - 1;
 
 /// The matrices of a model.
 pub(crate) struct Matrices {
-    pub pattern: Pattern,
+    pub pattern: Arc<Pattern>,
     pub stiffness: Vec<f64>,
     pub mass: Vec<f64>,
     /// Empty without follower loads.
@@ -35,7 +37,7 @@ pub(crate) struct Matrices {
 impl Matrices {
     /// Pattern and slots of the bodies of a model.
     pub(crate) fn new(model: &Model) -> Self {
-        let pattern = pattern(model);
+        let pattern = Arc::new(pattern(model));
         let mut slots = Vec::new();
         for part in &model.parts {
             for cell in 0..part.body.mesh().cell_count() {

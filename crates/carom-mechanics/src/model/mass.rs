@@ -6,7 +6,7 @@ use carom_solid::cell_lumped_mass;
 use super::body_instance::BodyInstance;
 
 /// Nodes per block of a product.
-const BLOCK: usize = 2048;
+const BLOCK: usize = 1024;
 
 /// Symmetric matrix between nodes, compressed by rows, both triangles.
 #[derive(Clone, Debug, Default)]

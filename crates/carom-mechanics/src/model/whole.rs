@@ -299,6 +299,7 @@ impl Model {
     pub fn on_threads(mut self, count: usize) -> Self {
         self.threads = Threads::new(count);
         self.mass.on(&self.threads);
+        self.contacts.iter_mut().for_each(|contact| contact.kinematics.on(&self.threads));
         self
     }
 

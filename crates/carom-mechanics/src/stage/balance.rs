@@ -15,6 +15,7 @@
 //! force, averaged with α_f. The scheme's own a is another quantity, with a delay of (α_f − α_m)Δt
 //! (Erlicher, Bonaventura, Bursi 2002): averaging ü with α_m instead costs an order.
 
+use carom_algebra::wide;
 use carom_time::{Stage, Weights};
 
 use crate::model::Model;
@@ -88,16 +89,17 @@ pub(crate) fn residual_into(
     known: &[f64],
     residual: &mut [f64],
 ) -> (f64, f64) {
-    let mut squares = [0.0_f64; 6];
-    for i in 0..residual.len() {
-        let terms = terms(model, stage, forces, known, i);
-        residual[i] = terms.iter().sum();
-        if !model.fixed[i] {
-            for (square, term) in squares.iter_mut().zip(terms) {
-                *square += term * term;
-            }
-            squares[5] += residual[i] * residual[i];
-        }
+    let balance = Terms { model, stage, forces, known };
+    let mut of_blocks = vec![[0.0; 6]; residual.len().div_ceil(BLOCK)];
+    model.threads.for_each(residual.chunks_mut(BLOCK).zip(&mut of_blocks), |block, (residual, squares)| {
+        *squares = wide(
+            #[inline(always)]
+            || balance.sum_into(block * BLOCK, residual),
+        );
+    });
+    let mut squares = [0.0; 6];
+    for of_block in &of_blocks {
+        squares.iter_mut().zip(of_block).for_each(|(sum, square)| *sum += square);
     }
     if !model.points.is_empty() {
         model.points.gather(residual);
@@ -106,4 +108,67 @@ pub(crate) fn residual_into(
     }
     let norms = squares.map(f64::sqrt);
     (norms[5], norms[..5].iter().sum())
+}
+
+/// Dofs that a thread sums.
+const BLOCK: usize = 4096;
+/// Dofs that are summed at once.
+const LANES: usize = 8;
+
+/// What the terms of r are made of.
+struct Terms<'a> {
+    model: &'a Model,
+    stage: &'a Stage,
+    forces: &'a Forces,
+    known: &'a [f64],
+}
+
+impl Terms<'_> {
+    /// Computes r of consecutive dofs. Returns the sums of the squares of its five terms, and of
+    /// its own, over the free ones.
+    #[inline(always)]
+    fn sum_into(&self, first: usize, residual: &mut [f64]) -> [f64; 6] {
+        let Self { model, stage, forces, known } = self;
+        let Weights { mass, internal, external, .. } = stage.weights;
+        let mut sums = [[0.0; LANES]; 6];
+        for (k, residual) in residual.chunks_mut(LANES).enumerate() {
+            let i = first + k * LANES;
+            let count = residual.len();
+            let inertia = lane(&forces.inertia, i, count);
+            let of_bodies = lane(&forces.internal, i, count);
+            let contact = lane(&forces.contact, i, count);
+            let gravity = lane(&model.gravity, i, count);
+            let loads = lane(&forces.loads, i, count);
+            let known = lane(known, i, count);
+            let fixed = lane(&model.fixed, i, count);
+            let mut sum = [0.0; LANES];
+            for l in 0..LANES {
+                let terms = [
+                    mass * inertia[l],
+                    internal * of_bodies[l],
+                    contact[l],
+                    -external * (gravity[l] + loads[l]),
+                    known[l],
+                ];
+                sum[l] = terms[0] + terms[1] + terms[2] + terms[3] + terms[4];
+                for (square, term) in sums.iter_mut().zip(terms.into_iter().chain([sum[l]])) {
+                    square[l] += if fixed[l] { 0.0 } else { term * term };
+                }
+            }
+            residual.copy_from_slice(&sum[..count]);
+        }
+        sums.map(|lanes| lanes.iter().sum())
+    }
+}
+
+/// Consecutive entries of a vector; where there are fewer, zeros follow.
+#[inline(always)]
+fn lane<T: Copy + Default>(of: &[T], first: usize, count: usize) -> [T; LANES] {
+    let mut lane = [T::default(); LANES];
+    if count == LANES {
+        lane.copy_from_slice(&of[first..first + LANES]);
+    } else {
+        lane[..count].copy_from_slice(&of[first..first + count]);
+    }
+    lane
 }

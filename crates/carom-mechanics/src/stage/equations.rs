@@ -20,6 +20,9 @@ use crate::stage::renewal::Point as FactorPoint;
 use crate::state::State;
 use crate::timings::{Timings, timed};
 
+/// Dofs that a thread moves.
+const BLOCK: usize = 4096;
+
 /// The equations of a stage.
 #[derive(Debug)]
 pub(crate) struct Equations<'a> {
@@ -164,10 +167,15 @@ impl<'a> Equations<'a> {
         }
         forces.loads.resize(dofs, 0.0);
         let share = if self.between() { 0.5 } else { 1.0 - stage.average };
-        for i in 0..dofs {
-            y[i] = state.y[i] + at.increment[i];
-            place[i] = state.y[i] + share * at.increment[i];
-        }
+        let increment = &at.increment;
+        model.threads.for_each(y.chunks_mut(BLOCK).zip(place.chunks_mut(BLOCK)), |block, (y, place)| {
+            let first = block * BLOCK;
+            let start = state.y[first..].iter().zip(&increment[first..]);
+            for ((y, place), (start, moved)) in y.iter_mut().zip(place).zip(start) {
+                *y = start + moved;
+                *place = start + share * moved;
+            }
+        });
         evaluation.strain = timed(&mut timings.assembly, || {
             let at = self.configuration(if self.between() { y } else { place });
             model.internal_force(&at, &mut forces.internal, &mut evaluation.materials)

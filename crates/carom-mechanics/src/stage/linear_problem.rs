@@ -80,7 +80,7 @@ pub(crate) struct LinearProblem {
 impl LinearProblem {
     /// Buffers for a model.
     pub(crate) fn new(model: &Model) -> Self {
-        Self { wholes: Wholes::new(model), ..Self::default() }
+        Self { wholes: Wholes::new(model), mixing: Mixing::on(&model.threads), ..Self::default() }
     }
 
     /// Clears the history: with another factor, other rows, or after a shortened step it is

@@ -10,12 +10,10 @@ use std::collections::BTreeMap;
 
 use carom_algebra::principal;
 use carom_case::Case;
-use carom_mechanics::State;
 use carom_mechanics::model::{Model, past_of, von_mises};
+use carom_mechanics::{State, Surfaces};
 use carom_record::{Block, Cell, CellMaterials, FieldSet, PointArray};
 use carom_solid::{Element, Mesh};
-
-use super::pressure::Surfaces;
 
 /// Fields of a state.
 pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: &State) -> FieldSet {

@@ -5,7 +5,6 @@ mod fields;
 mod frames;
 mod log;
 mod outcome;
-mod pressure;
 mod rows;
 mod session;
 mod start;

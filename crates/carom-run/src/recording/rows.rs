@@ -4,11 +4,10 @@ use carom_algebra::Vector;
 use carom_case::{Case, history_columns};
 use carom_contact::{self as contact, FrictionState, Pair, Tangential, length};
 use carom_mechanics::model::{Contact, Model};
-use carom_mechanics::{GridReport, Simulation, State, each_slip, penetration};
+use carom_mechanics::{GridReport, Simulation, State, Surfaces, each_slip, penetration};
 use carom_record::{Column, ContactRow};
 
 use super::columns::{Recorded, Since, center_weights, row};
-use super::pressure::Surfaces;
 
 /// Rows of a simulation that is advanced step by step.
 pub struct Rows {

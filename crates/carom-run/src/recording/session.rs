@@ -202,7 +202,9 @@ impl<'a> Session<'a> {
     fn write_row(&mut self) -> Result<(), RunError> {
         let model = self.simulation.model();
         let state = self.simulation.state();
-        let values = self.rows.row(&self.simulation);
+        let rows = &self.rows;
+        let (values, contacts) =
+            model.threads.join(|| rows.row(&self.simulation), || contact_rows(model, &rows.surfaces, state));
         self.rows.since = Since::default();
         for (body, largest) in &mut self.rotations {
             for (largest, now) in largest.iter_mut().zip(model.turn(*body, &state.y)) {
@@ -212,9 +214,7 @@ impl<'a> Session<'a> {
             }
         }
         self.writer.history(&values)?;
-        contact_rows(model, &self.rows.surfaces, state)
-            .iter()
-            .try_for_each(|row| self.writer.contact(row))?;
+        contacts.iter().try_for_each(|row| self.writer.contact(row))?;
         Ok(())
     }
 

@@ -89,6 +89,9 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::volume_ratio`].
     fn volume_ratio_at(&self, h: &Mat<D>, past: &Past) -> f64;
 
+    /// [`Material::volume_ratio`] of a law without memory.
+    fn volume_ratios(&self, h: &Mats<D>) -> Lanes;
+
     /// ∂Pᵢᴶ/∂Xᴶ = Σ ∂Pᵢᴶ/∂Fₖᴸ ∂²yₖ/∂Xᴶ∂Xᴸ from ∂²y/∂X∂X as `[k][J][L]`.
     fn divergence(&self, h: &Mat<D>, second: &[f64]) -> Result<Vector<D>, NotPositive>;
 }
@@ -213,6 +216,13 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
 
     fn volume_ratio_at(&self, h: &Mat<D>, past: &Past) -> f64 {
         self.volume_ratio(h, past)
+    }
+
+    fn volume_ratios(&self, h: &Mats<D>) -> Lanes {
+        wide(
+            #[inline(always)]
+            || std::array::from_fn(|l| self.volume_ratio(&get(h, l), &Past::default())),
+        )
     }
 
     fn divergence(&self, h: &Mat<D>, second: &[f64]) -> Result<Vector<D>, NotPositive> {

@@ -174,20 +174,21 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
 
     /// Smallest J of consecutive cells, of which the first is that of a packed block.
     pub(super) fn constant_min_det_f(&self, cells: Range<usize>, y: &[f64]) -> f64 {
-        let none = Past::default();
-        let mut least = f64::INFINITY;
+        let mut least = [f64::INFINITY; LANES];
         for first in cells.clone().step_by(LANES) {
             let count = LANES.min(cells.end - first);
             let h = wide(
                 #[inline(always)]
                 || self.gradients_of_four(first, count, y),
             );
-            for l in 0..count {
-                let law = &self.medium(first + l).law;
-                least = least.min(law.volume_ratio_at(&get(&h, l), &none));
+            let region = self.mesh.region(first);
+            let mut ratios = self.media[region].law.volume_ratios(&h);
+            for l in (0..count).filter(|l| self.mesh.region(first + l) != region) {
+                ratios[l] = self.medium(first + l).law.volume_ratio_at(&get(&h, l), &Past::default());
             }
+            (0..count).for_each(|l| least[l] = least[l].min(ratios[l]));
         }
-        least
+        least.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Forces and energies of up to four cells, those of a packed block; returns false if one is

@@ -5,11 +5,10 @@ mod change;
 mod place;
 
 use carom_case::Case;
-use carom_mechanics::{GridReport, Simulation, Stopped};
+use carom_mechanics::{GridReport, Simulation, Stopped, Surfaces};
 use carom_record::{FieldSet, PointArray, Stop, StopIteration};
 
 use super::fields::{displacements, field_set};
-use super::pressure::Surfaces;
 pub(super) use advice::advice;
 use place::place;
 
