@@ -134,7 +134,7 @@ impl<const D: usize, P> AtStrain<D, P> {
     }
 
     /// ∂S/∂E : dE.
-    #[inline(never)]
+    #[inline(always)]
     fn change<L: Material<D, Point = P>>(&self, law: &L, de: &Mat<D>) -> Mat<D> {
         let df = self.inverse.transposed() * *de;
         self.inverse * (law.change(&self.point, &df) - df * self.stress)
@@ -142,7 +142,7 @@ impl<const D: usize, P> AtStrain<D, P> {
 }
 
 /// The law at a strain.
-#[inline(never)]
+#[inline(always)]
 fn law_at<const D: usize, L: Material<D>>(
     law: &L,
     strain: &Mat<D>,
@@ -171,7 +171,7 @@ struct Path<const D: usize, P> {
 }
 
 impl<const D: usize, P> Path<D, P> {
-    #[inline(never)]
+    #[inline(always)]
     fn new<L: Material<D, Point = P>>(law: &L, h: [&Mat<D>; 2]) -> Result<Self, NotPositive> {
         for h in h {
             // Strains do not tell a reflection.
@@ -245,7 +245,7 @@ impl<const D: usize, P> Path<D, P> {
     }
 
     /// φ.
-    #[inline(never)]
+    #[inline(always)]
     fn phi<L: Material<D, Point = P>>(&self, law: &L, end: &P) -> Result<f64, NotPositive> {
         if !self.corrected {
             return Ok(0.0);

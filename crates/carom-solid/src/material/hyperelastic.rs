@@ -141,8 +141,12 @@ pub trait Material<const D: usize>: Send + Sync {
         Ok(changes)
     }
 
-    /// Cauchy stress within the dimensions of the body, P Fᵀ/J, of a point at H.
+    /// Cauchy stress within the dimensions of the body, P Fᵀ/J, of a point at H; of a law of small
+    /// strain P itself.
     fn cauchy(&self, point: &Self::Point, h: &Mat<D>) -> Mat<D> {
+        if !Self::OBJECTIVE {
+            return self.stress(point);
+        }
         let f = Mat::identity() + *h;
         self.stress(point) * f.transposed() * (1.0 / (1.0 + excess_det(h)))
     }

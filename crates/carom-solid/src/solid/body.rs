@@ -243,6 +243,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let mut energies = if law.memory() > 0 {
             self.evolve(&**law, cell, at, ask, numbers, memory)?
         } else {
+            memory.fill(0.0);
             let stored = match (ask, at.before) {
                 // The mean dilatation is in the same pass over the points.
                 (Ask::Force, None) => {
