@@ -171,8 +171,7 @@ impl Surfaces {
         let mut loads = vec![None; forces.len()];
         for (node, force) in forces.iter().enumerate() {
             let Some(force) = force else { continue };
-            // Of several facets any one will do, because the polynomials that differ from zero at
-            // a node are those of facets around it.
+            // Any facet around the node will do: polynomials of other facets are zero there.
             let facet = &self.facets[self.around[node][0]];
             let place = facet.nodes.iter().position(|n| *n == node).unwrap_or_default();
             for (i, &value) in facet.nodes.iter().zip(&facet.shape.bernstein_at_nodes()[place]) {

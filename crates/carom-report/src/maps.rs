@@ -135,7 +135,7 @@ pub(crate) fn stick_slip(run: &Recorded) -> Option<Figure> {
     let sides = sides(run, |row, place| place.is_secondary && has_state(row));
     let words = directions(run, &sides);
     let [against, along] = words.unwrap_or(["slips backward", "slips forward"]);
-    // One direction has one colour, whichever side lies above.
+    // Slip towards −x or −y has the first colour, whichever side lies above.
     let flipped = against.contains('+');
     let states = if flipped { ["sticks", along, against] } else { ["sticks", against, along] };
     let mut table = String::from("contact,node,s,time,state,traction\n");

@@ -115,7 +115,7 @@ const BLOCK: usize = 4096;
 /// Dofs that are summed at once.
 const LANES: usize = 8;
 
-/// What the terms of r are made of.
+/// Model, weights and forces from which the terms of the residual r are summed.
 struct Terms<'a> {
     model: &'a Model,
     stage: &'a Stage,

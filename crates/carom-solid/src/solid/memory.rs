@@ -46,7 +46,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         numbers: &mut [f64],
         memory: &mut [f64],
     ) -> Result<Energies, Inverted> {
-        // What the law of this cell does not use is no memory.
+        // A law may use fewer numbers than the body has for a cell: the others are zero.
         memory.fill(0.0);
         // At the start of a run nothing is remembered.
         let none = if at.past.memory.is_empty() { vec![0.0; self.memory] } else { Vec::new() };
