@@ -7,7 +7,7 @@
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
-use crate::kinematics::{Depth, Facets, Surface};
+use crate::kinematics::{Depth, Facets, OnFacet, Surface};
 use crate::places::Places;
 
 /// The point of a facet in the plane that is nearest to a given point.
@@ -60,6 +60,15 @@ impl Facets<2> for Surface {
 
     fn beside(&self, facet: usize) -> impl Iterator<Item = usize> {
         [false, true].into_iter().filter_map(move |forward| self.neighbour(facet, forward))
+    }
+
+    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
+        let end = |facet: usize| {
+            let nodes = self.facet(facet).nodes;
+            let xi = if nodes[0] == node { Some(-1.0) } else { (nodes[1] == node).then_some(1.0) };
+            xi.map(|xi| OnFacet { facet, xi: [xi, 0.0] })
+        };
+        (0..self.facets()).filter_map(end).collect()
     }
 
     fn is_mirror(&self, facet: usize) -> bool {

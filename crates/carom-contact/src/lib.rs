@@ -27,10 +27,10 @@ pub use interface::{
     Unilateral,
 };
 pub use kinematics::{
-    BothSides, Boundary, Carrier, ClosedSurface, ContactPoint, Crossings, Depth, Detection, EdgeToEdge,
-    Faceted, Joined, Kinematics, Mortar, NodalPressure, NodeToFacet, NodeToObstacle, NodeToPatch,
-    NodesWithDepth, Obstacle, OnFacet, OneWay, Outward, Passed, Polyline, PolylineError, Quadrature, Side,
-    SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet, WithEdges, WithTips,
+    Boundary, Carrier, ClosedSurface, Combined, ContactPoint, Crossings, Depth, Detection, EdgeToEdge,
+    Faceted, Kinematics, Mortar, NodalPressure, NodeToFacet, NodeToObstacle, NodeToPatch, NodesWithDepth,
+    Obstacle, OnFacet, Outward, Passed, Polyline, PolylineError, Quadrature, Side, SpaceHit, Surface, Swept,
+    SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -223,9 +223,9 @@ impl Rows {
     }
 
     /// Marks the rows from `first` on as those of a node of the primary side against the secondary
-    /// one.
-    pub(crate) fn reverse_from(&mut self, first: usize) {
-        self.reversed[first..].fill(true);
+    /// one, or not.
+    pub(crate) fn reverse_from(&mut self, first: usize, reversed: bool) {
+        self.reversed[first..].fill(reversed);
     }
 
     /// Marks the last row as that of an edge, which its first `own` nodes form.

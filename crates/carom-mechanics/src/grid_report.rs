@@ -1,5 +1,7 @@
 //! What happened between two grid times, for the log.
 
+use std::collections::BTreeSet;
+
 use carom_contact::PairEvent;
 
 use crate::check::overlapping::Overlap;
@@ -50,7 +52,8 @@ pub enum LogEvent {
         /// The event.
         event: PairEvent,
     },
-    /// Bodies overlap without a contact, or one crosses itself, for the first time.
+    /// Bodies overlap without a contact, one crosses itself, or the sides of a contact penetrate
+    /// each other deeply, for the first time.
     Overlap {
         /// Time.
         time: f64,
@@ -103,6 +106,8 @@ pub struct GridReport {
     pub releases: u32,
     /// Largest penetration at the ends of its steps.
     pub penetration: Depths,
+    /// Contacts of which a node was then deeper than a tenth of the facet that it entered.
+    pub doubtful: BTreeSet<usize>,
     /// Events in order.
     pub events: Vec<LogEvent>,
 }
@@ -114,6 +119,7 @@ impl GridReport {
         self.activations += step.activations.len() as u32;
         self.releases += step.releases.len() as u32;
         self.penetration = self.penetration.max(step.penetration);
+        self.doubtful.extend(step.doubtful);
         let met = step.meetings.into_iter().chain(std::iter::repeat(None));
         for ((contact, node), met) in step.activations.into_iter().zip(met) {
             self.events.push(LogEvent::ActiveSet { time, contact, node, active: true, met });

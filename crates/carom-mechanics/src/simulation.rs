@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use carom_contact::Passed;
 
+use crate::check::overlapping::Overlap;
 use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
@@ -306,7 +307,9 @@ impl Simulation {
         state.step += 1;
         state.time = self.grid.time(state.step);
         let Workspace { undeclared, timings, .. } = &mut self.work;
-        for overlap in timed(&mut timings.contact, || undeclared.found(&self.model, &state.y)) {
+        let undeclared = timed(&mut timings.contact, || undeclared.found(&self.model, &state.y));
+        let deep: Vec<Overlap> = report.doubtful.iter().map(|&contact| Overlap::Sides { contact }).collect();
+        for overlap in undeclared.into_iter().chain(deep) {
             if !state.overlaps.contains(&overlap) {
                 state.overlaps.push(overlap);
                 report.events.push(LogEvent::Overlap { time: state.time, overlap });

@@ -3,16 +3,16 @@
 
 use carom_algebra::Vector;
 
-use super::both_sides::PARALLEL;
 use super::facets::{Facets, OnFacet};
-use super::facing::{Closest, REACH, Reached};
+use super::facing::{Closest, NEAR_END, REACH, Reached};
 use super::joint::AT_JOINT;
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
+use super::reversed::PARALLEL;
 use super::surface::Surface;
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
-use crate::kinematics::{Kinematics, OneWay};
+use crate::kinematics::Kinematics;
 use crate::pair::Pair;
 use crate::places::Places;
 
@@ -26,7 +26,7 @@ const RECAPTURED: f64 = 0.02;
 /// Distance behind a facet at the start of a step, relative to the distance from the end of the
 /// side, beyond which a node past that end has not crossed the facet, or to the distance at which a
 /// corner is left to a node: the sine of 10°, the angle up to which facets that meet there count as
-/// parallel (`both_sides.rs`).
+/// parallel (`reversed.rs`).
 pub(super) const AROUND: f64 = 0.17;
 
 impl NodeToFacet {
@@ -154,7 +154,7 @@ impl NodeToFacet {
     /// Whether a node that is no corner itself meets a corner of the primary, which the other
     /// direction of contact keeps out: with one of the facets there it would push to one side.
     /// Where a facet at the corner is parallel to one at the node, the corner is left to the node
-    /// (`both_sides.rs`).
+    /// (`reversed.rs`).
     fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
         let forward = xi > 0.0;
         let Some((own, around)) = &self.own else { return false };
@@ -212,7 +212,7 @@ impl NodeToFacet {
             let xi = shape.closest_point(now, now.at(node), REACH)?;
             let start = shape.closest_point(before, before.at(node), REACH)?;
             let length = self.primary.length(facet, before);
-            let past = Self::NEAR_END * length;
+            let past = NEAR_END * length;
             let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
                 && self.gap(node, facet, start, before) + slack >= -AROUND * past;

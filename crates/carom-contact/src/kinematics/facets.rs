@@ -49,6 +49,9 @@ pub(crate) trait Facets<const D: usize> {
     /// Outward unit normal of a facet at ξ, padded with zeros to space.
     fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> Vector<3>;
 
+    /// The facets of the side on whose ends or edges a node lies, with its coordinates on them.
+    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>>;
+
     /// Whether a facet lies in a plane of symmetry, where the mirror image continues the body.
     fn is_mirror(&self, facet: usize) -> bool;
 

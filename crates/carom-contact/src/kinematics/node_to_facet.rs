@@ -15,19 +15,20 @@ use std::sync::{Arc, Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::facets::{Facets, OnFacet};
-use super::facing::{PAST, REACH, Reached};
+use super::facing::{NEAR_END, PAST, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
 use super::gap::Gap;
 use super::hand_over::{Held, Next, Sliding};
 use super::joint::{AT_JOINT, OnFacets};
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
+use super::reversed::{Corners, Faced, NodesWithDepth};
 use super::rounding::rounding;
 use super::surface::{Search, Surface, path};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
-use super::{Kinematics, watch_every_node, zero};
+use super::{Combined, Kinematics, watch_every_node, zero};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
@@ -78,6 +79,8 @@ pub struct NodeToFacet {
     /// nodes.
     pub(super) own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
     single: bool,
+    /// For nodes of the primary side against the secondary one: their corners.
+    reversed: Option<Corners>,
     tools: Mutex<Tools>,
 }
 
@@ -105,8 +108,31 @@ impl NodeToFacet {
             folds: None,
             own: None,
             single: false,
+            reversed: None,
             tools: Mutex::new(tools),
         }
+    }
+
+    /// A side against itself: its nodes in the role of the later place, and those in the role of
+    /// the earlier one, whose depth is zero at corners; `piece`: the connected piece of its body to
+    /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
+    /// over all nodes; `single`: whether a node over a joint has a pair with one facet.
+    pub fn of_itself(
+        side: &Surface,
+        nodes: Vec<usize>,
+        earlier: NodesWithDepth,
+        piece: &[usize],
+        first_node: usize,
+        reference: &[f64],
+        single: bool,
+    ) -> Combined {
+        let folds = Arc::new(Folds::new(side, piece, first_node, reference));
+        let of = |nodes: Vec<usize>, which: Side| {
+            let nodes = Self::new(nodes, side.clone(), Detection::ClosestPoint);
+            nodes.with_single_facets(single).of_body(side.clone()).folding(folds.clone(), which)
+        };
+        let reverse = of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths).reversed();
+        Combined::both(of(nodes, Side::Later), reverse)
     }
 
     /// Contact with another rule for the contact point; only [`Detection::Trajectory`] finds a
@@ -161,6 +187,26 @@ impl NodeToFacet {
         let height = (y.at(node) - here.position).dot(&here.normal);
         let sized = |other: usize| (other, self.primary.length(other, y));
         !is_left(&facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
+    }
+
+    /// Contact of nodes of the primary side with the secondary one (`reversed.rs`), once the body of
+    /// the nodes and their depths are known.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let corners = self
+            .own
+            .as_ref()
+            .map(|(own, _)| Corners::new(own, &self.secondary, |place| self.allowed(place), NEAR_END));
+        Self { reversed: Some(corners.unwrap_or_default()), ..self }
+    }
+
+    /// Whether the pair of a corner of the primary side is left to a node of its facet.
+    fn is_left_to_node(&self, pair: &Pair, y: &[f64]) -> bool {
+        let (Some(corners), Some((own, _))) = (&self.reversed, &self.own) else { return false };
+        let node = self.secondary[pair.node];
+        let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
+        let corner = Faced { place: pair.node, node, at, kept: self.kept(pair.node) };
+        corners.is_left_to_node(corner, [own, &self.primary], y)
     }
 
     /// Contact of nodes of the primary side with that side itself.
@@ -469,7 +515,14 @@ impl Kinematics for NodeToFacet {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        self.measure_mean(pair, y, rows)
+        if !pair.active && self.is_left_to_node(pair, y) {
+            rows.push_open();
+            return Ok(());
+        }
+        let first = rows.len();
+        self.measure_mean(pair, y, rows)?;
+        rows.reverse_from(first, self.reversed.is_some());
+        Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
@@ -477,7 +530,10 @@ impl Kinematics for NodeToFacet {
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        self.slip_of_mean(pair, y, rows)
+        let first = rows.len();
+        self.slip_of_mean(pair, y, rows)?;
+        rows.reverse_from(first, self.reversed.is_some());
+        Ok(())
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {

@@ -13,13 +13,12 @@ use std::collections::BTreeMap;
 
 use carom_algebra::Vector;
 
-use super::both_sides::NodesWithDepth;
 use super::carrier::{Carrier, Local};
-use super::node_to_facet::NodeToFacet;
+use super::facing::NEAR_END;
 use super::obstacle::{AtCorner, CORNER_COSINE, Near, Obstacle, ObstacleGap, Point, Through, Tip, dot};
-use super::one_way::OneWay;
 use super::outward::{Outward, is_opposed};
 use super::passed::Passed;
+use super::reversed::NodesWithDepth;
 use super::tangents::tangents;
 use super::way::{SHARE, share};
 use super::{Kinematics, watch_every_node};
@@ -130,7 +129,7 @@ impl NodeToObstacle {
     fn pressed(&self, place: usize, faced: usize, local: &Local, y: &[f64]) -> Option<usize> {
         let own = self.own.as_ref()?;
         let length = *self.lengths.get(place)?;
-        let past = NodeToFacet::NEAR_END * length;
+        let past = NEAR_END * length;
         let here = self.shape.near(faced, local.at).filter(|here| here.gap <= past)?;
         let over = self.shape.over(local.at, length, past);
         // A corner of the obstacle has no normal to which a facet could be parallel.
@@ -173,7 +172,7 @@ impl NodeToObstacle {
     /// Whether a node still needs a pair, one of several in a concave corner.
     fn is_held(&self, pair: &Pair, at: Point) -> bool {
         let length = self.lengths.get(pair.node).copied().unwrap_or(0.0);
-        let is_near = |near: Near| near.gap <= NodeToFacet::NEAR_END * length;
+        let is_near = |near: Near| near.gap <= NEAR_END * length;
         pair.active || self.shape.near(pair.facet, at).is_some_and(is_near)
     }
 

@@ -25,11 +25,11 @@
 //! that of a node (`joint.rs`), but with friction: the slip is that on one facet.
 
 use super::carrier::{Carrier, Local};
+use super::facing::NEAR_END;
 use super::joint::OnFacets;
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::{Point, Tip, dot};
-use super::one_way::OneWay;
 use super::outward::PARALLEL;
 use super::passed::Passed;
 use super::surface::Surface;
@@ -159,7 +159,7 @@ impl TipToFacet {
             return false;
         }
         let along = foot.tangent * foot.measure.recip();
-        let near = NodeToFacet::NEAR_END * length;
+        let near = NEAR_END * length;
         let meets = |&node: &usize| (places.at(node) - center - foot.position).dot(&along).abs() < near;
         let meets_node = self.leaves && self.side.nodes_of(pair.facet).iter().any(meets);
         let Some([first, last]) = tip.normals else { return !meets_node };

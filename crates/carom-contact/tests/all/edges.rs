@@ -5,8 +5,7 @@ use std::collections::BTreeSet;
 
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{
-    BothSides, Boundary, DiscreteGradient, EdgeToEdge, Kinematics, NodeToPatch, Pair, PairEvent, Pairing,
-    Rows, WithEdges,
+    Boundary, Combined, DiscreteGradient, EdgeToEdge, Kinematics, NodeToPatch, Pair, PairEvent, Pairing, Rows,
 };
 use carom_solid::FacetShape;
 
@@ -19,7 +18,7 @@ fn roofs(
     count: usize,
     height: f64,
     bend: impl Fn([f64; 3]) -> [f64; 3],
-) -> (WithEdges, Vec<f64>) {
+) -> (Combined, Vec<f64>) {
     let mut y = Vec::<f64>::new();
     let mut sides = Vec::new();
     for is_upper in [false, true] {
@@ -56,9 +55,9 @@ fn roofs(
     };
     let edges = EdgeToEdge::new([above.clone(), below.clone()], &[BTreeSet::new(), BTreeSet::new()], &y);
     let allowed = vec![1.0; nodes(lower).len()];
-    let reverse = NodeToPatch::new(nodes(lower), above).with_allowed(allowed);
-    let both = BothSides::new(NodeToPatch::new(nodes(upper), below), reverse);
-    (WithEdges::new(both, edges), y)
+    let reverse = NodeToPatch::new(nodes(lower), above).with_allowed(allowed).reversed();
+    let upper_nodes = NodeToPatch::new(nodes(upper), below);
+    (Combined::new(vec![Box::new(upper_nodes), Box::new(reverse), Box::new(edges)]), y)
 }
 
 fn straight(x: [f64; 3]) -> [f64; 3] {
@@ -70,7 +69,7 @@ fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
 }
 
 /// The pair of the only edges, at its closest points.
-fn measured(contact: &WithEdges, y: &[f64]) -> (Rows, Pair) {
+fn measured(contact: &Combined, y: &[f64]) -> (Rows, Pair) {
     let pair = Pair { active: true, eta: -0.1, ..Pair::open(contact.nodes(), 2, 0.1) };
     let mut rows = Rows::new(3);
     let mut pair = pair;
@@ -78,7 +77,7 @@ fn measured(contact: &WithEdges, y: &[f64]) -> (Rows, Pair) {
     (rows, pair)
 }
 
-fn force(contact: &WithEdges, y: &[f64], lambda: f64) -> Vec<f64> {
+fn force(contact: &Combined, y: &[f64], lambda: f64) -> Vec<f64> {
     let mut full = vec![0.0; y.len()];
     measured(contact, y).0.row(0).add_to(lambda, &mut full);
     full
@@ -198,7 +197,7 @@ fn placed(y: &[f64], upper: usize, shift: [f64; 3], degrees: f64) -> Vec<f64> {
 }
 
 /// The pairs of edges that a motion of the upper body finds.
-fn found(contact: &WithEdges, before: &[f64], now: &[f64]) -> Vec<Pair> {
+fn found(contact: &Combined, before: &[f64], now: &[f64]) -> Vec<Pair> {
     let mut pairing = Pairing::default();
     contact.search(before, now, &mut pairing, &mut Vec::new());
     pairing.pairs.retain(|pair| pair.node >= contact.nodes());
@@ -280,7 +279,7 @@ fn a_pair_goes_on_along_the_edges_and_leaves_at_their_end() {
 }
 
 /// Whether a pair touches the lower ridge at x.
-fn pairs_place(contact: &WithEdges, pair: &Pair, y: &[f64], x: f64) -> bool {
+fn pairs_place(contact: &Combined, pair: &Pair, y: &[f64], x: f64) -> bool {
     let nodes = contact.facet_nodes(pair);
     let of = |end: usize| y[3 * nodes[end]];
     (0.5 * (1.0 - pair.eta) * of(0) + 0.5 * (1.0 + pair.eta) * of(1) - x).abs() < 1e-12

@@ -9,7 +9,7 @@
 //! a trace, and independent of the number of facets for a stable pair.
 
 use carom_algebra::Saddle;
-use carom_contact::{BothSides, Detection, Kinematics, Mortar, NodeToFacet, Pair, Rows, Surface};
+use carom_contact::{Combined, Detection, Kinematics, Mortar, NodeToFacet, Pair, Rows, Surface};
 use carom_solid::{FacetShape, quadrature};
 
 /// Shape functions of a facet on −1 … 1, in the order of x.
@@ -68,8 +68,10 @@ fn rows(shape: FacetShape, facets: usize) -> Vec<Vec<f64>> {
     let primary = Surface::new(FacetShape::L2, &below, &[1.0]);
     let nodes_of =
         |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-    let sides =
-        BothSides::new(nodes_of((0..nodes).collect(), &primary), nodes_of(below.concat(), &secondary));
+    let sides = Combined::both(
+        nodes_of((0..nodes).collect(), &primary),
+        nodes_of(below.concat(), &secondary).reversed(),
+    );
     let contact = Mortar::new(secondary, primary, &y, sides);
     let row = |multiplier: usize| {
         let mut pair = Pair { reach: 9, active: true, ..Pair::open(multiplier, 0, 0.0) };

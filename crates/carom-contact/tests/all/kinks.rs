@@ -1,6 +1,6 @@
 //! Convex and concave corners, and ends of sides: which facets a node faces there.
 
-use carom_contact::{BothSides, Detection, Kinematics, NodeToFacet, Pair, Pairing, Rows, Surface};
+use carom_contact::{Combined, Detection, Kinematics, NodeToFacet, Pair, Pairing, Rows, Surface};
 use carom_solid::FacetShape;
 
 /// A square of side 1 with its corners as nodes 0 to 3; its top is the facet from 2 to 3.
@@ -92,7 +92,8 @@ fn a_corner_of_the_primary_does_not_cut_into_an_edge_of_the_secondary() {
     // The edge above the square, of a body that lies above it: its ends are far from the corner.
     let edge = Surface::new(FacetShape::L2, &[vec![4, 5]], &[1.0]);
     let others = NodeToFacet::new(vec![2, 3], edge, Detection::ClosestPoint).with_allowed(vec![0.0, 0.02]);
-    let contact = BothSides::new(NodeToFacet::new(vec![4, 5], top(), Detection::ClosestPoint), others);
+    let contact =
+        Combined::both(NodeToFacet::new(vec![4, 5], top(), Detection::ClosestPoint), others.reversed());
     let sloped = |height: f64| positions(&[[-1.0, height + 1.0], [2.0, height - 0.5]]);
     let before = sloped(1.1);
     let now = sloped(0.97);

@@ -3,7 +3,7 @@
 
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{
-    BothSides, Carrier, Detection, Kinematics, Mortar, NodeToFacet, NodeToObstacle, Obstacle, Pair,
+    Carrier, Combined, Detection, Kinematics, Mortar, NodeToFacet, NodeToObstacle, Obstacle, Pair,
     Quadrature, Rows, Surface,
 };
 use carom_solid::FacetShape;
@@ -44,7 +44,7 @@ fn scene(shape: FacetShape, count: usize, gap: f64) -> Scene {
     let [secondary, primary] = [&above, &below].map(|facets| side(facets));
     let nodes =
         |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-    let sides = BothSides::new(nodes(above.concat(), &primary), nodes(below.concat(), &secondary));
+    let sides = Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
     Scene { contact: Mortar::new(secondary, primary, &y, sides), y }
 }
 
@@ -69,7 +69,7 @@ fn overhanging(shape: FacetShape) -> Scene {
     let [secondary, primary] = [&above, &below].map(|facets| side(facets));
     let nodes =
         |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-    let sides = BothSides::new(nodes(above.concat(), &primary), nodes(below.concat(), &secondary));
+    let sides = Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
     Scene { contact: Mortar::new(secondary, primary, &y, sides), y }
 }
 
@@ -87,7 +87,8 @@ fn steep(shape: FacetShape, opposite: Steep) -> Scene {
             let nodes = |nodes: Vec<usize>, to: &Surface| {
                 NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint)
             };
-            let sides = BothSides::new(nodes(above.concat(), &primary), nodes(below.concat(), &secondary));
+            let sides =
+                Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
             return Scene { contact: Mortar::new(secondary, primary, &y, sides), y };
         }
         Steep::Plane => Obstacle::plane(&[0.0, 0.0], &[0.0, 1.0]),
@@ -265,7 +266,8 @@ fn the_gap_is_a_mean() {
         let [secondary, primary] = [&above, &below].map(|facets| side(facets));
         let nodes =
             |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-        let sides = BothSides::new(nodes(above.concat(), &primary), nodes(below.concat(), &secondary));
+        let sides =
+            Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
         let contact = Mortar::new(secondary, primary, &reference, sides);
         let mut rows = Rows::new(2);
         let mut pair = Pair { reach: 99, ..Pair::open(0, 15, 0.0) };
@@ -291,7 +293,8 @@ fn what_faces_nothing_does_not_count() {
         let [secondary, primary] = [&above, &below].map(|facets| side(facets));
         let nodes =
             |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-        let sides = BothSides::new(nodes(above.concat(), &primary), nodes(below.concat(), &secondary));
+        let sides =
+            Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
         let contact = Mortar::new(secondary, primary, &y, sides);
         let gap = |node: usize| {
             let mut rows = Rows::new(2);

@@ -1,8 +1,8 @@
-//! What may overlap without a contact.
+//! What may overlap, with or without a contact.
 
 use serde::{Deserialize, Serialize};
 
-/// What overlaps without a contact.
+/// What overlaps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Overlap {
     /// Two bodies, or a body and itself: their indices.
@@ -19,6 +19,11 @@ pub enum Overlap {
     Between {
         /// Index of the body.
         body: usize,
+        /// Index of the contact.
+        contact: usize,
+    },
+    /// The sides of a contact: a node is deeper than a tenth of the facet that it entered.
+    Sides {
         /// Index of the contact.
         contact: usize,
     },

@@ -5,14 +5,14 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use carom_contact::{InsideItself, Rows, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
 use crate::check::tips::{Pierced, Tips};
-use crate::check::watched::{Way, edge_points, has_gaps, keeps, watched};
+use crate::check::watched::{Way, edge_points, has_gaps, keeps, lengths, watched};
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -33,6 +33,41 @@ pub struct Penetration {
     /// kink, by node.
     paired: Vec<(usize, f64, Entered)>,
     rows: Option<Rows>,
+    /// For each contact whose nodes all have gaps, the lengths of their facets by node.
+    lengths: Vec<HashMap<usize, f64>>,
+}
+
+/// Depth over the length of a facet from which a contact is doubtful, whatever its law allows.
+const DOUBTFUL: f64 = 0.1;
+
+/// Penetration at a state.
+#[derive(Debug, Default)]
+pub(crate) struct Measured {
+    pub depths: Depths,
+    /// Contacts with a node deeper than a tenth of a facet, ascending.
+    pub doubtful: Vec<usize>,
+    /// The first node found beyond its limit, with contact and body.
+    beyond: Option<(usize, usize, Inside)>,
+}
+
+impl Measured {
+    /// Adds the depth of a node in a facet, or of a facet at a node, of this length.
+    fn add(&mut self, contact: usize, constrained: bool, depth: f64, length: f64) {
+        self.depths.add(depth, constrained);
+        if depth > DOUBTFUL * length && self.doubtful.last() != Some(&contact) {
+            self.doubtful.push(contact);
+        }
+    }
+}
+
+/// Penetration of the nodes of a way.
+#[derive(Debug, Default)]
+pub(crate) struct Deepest {
+    depths: Depths,
+    /// Whether a node is deeper than a tenth of the facet that it entered.
+    is_doubtful: bool,
+    /// The node that is furthest beyond its limit.
+    pub beyond: Option<Inside>,
 }
 
 /// A facet that a node entered.
@@ -123,7 +158,14 @@ impl Penetration {
                 ways.push(Way::new(model, Some(k), body, nodes));
             }
         }
-        Self::new(model, ways, Tips::all(model))
+        let of_contact = |contact: &Contact| match &contact.facets[..] {
+            [(_, facets), ..] if model.dimension > 1 && has_gaps(model, contact) => {
+                lengths(model, facets).collect()
+            }
+            _ => HashMap::new(),
+        };
+        let lengths = model.contacts.iter().map(of_contact).collect();
+        Self { lengths, ..Self::new(model, ways, Tips::all(model)) }
     }
 
     pub(crate) fn new(model: &Model, ways: Vec<Way>, tips: Vec<Tips>) -> Self {
@@ -148,10 +190,10 @@ impl Penetration {
     ///
     /// # Errors
     /// A node that is deeper than its contact allows.
-    pub(crate) fn check(&mut self, model: &Model, state: &State) -> Result<Depths, Rejected> {
-        let (deepest, beyond) = self.measure(model, state);
-        match beyond {
-            None => Ok(deepest),
+    pub(crate) fn check(&mut self, model: &Model, state: &State) -> Result<Measured, Rejected> {
+        let measured = self.measure(model, state);
+        match measured.beyond {
+            None => Ok(measured),
             Some((contact, body, inside)) => Err(Rejected::Penetration {
                 contact: model.contacts[contact].name.clone(),
                 what: inside.what.words(),
@@ -163,44 +205,56 @@ impl Penetration {
         }
     }
 
-    /// Penetration at the state, and the first node beyond its limit with contact and body.
-    fn measure(&mut self, model: &Model, state: &State) -> (Depths, Option<(usize, usize, Inside)>) {
+    fn measure(&mut self, model: &Model, state: &State) -> Measured {
         self.begin(model, &state.y);
-        let mut deepest = Depths::default();
-        let mut beyond = None;
+        let mut measured = Measured::default();
         for k in 0..self.ways.len() {
-            let (depths, inside) = self.deepest(model, k, Some(state));
-            deepest = deepest.max(depths);
-            let of_way = inside.zip(self.ways[k].contact);
-            beyond = beyond.or(of_way.map(|(inside, contact)| (contact, self.ways[k].body, inside)));
+            let Deepest { depths, is_doubtful, beyond } = self.deepest(model, k, Some(state));
+            measured.depths = measured.depths.max(depths);
+            let Some(contact) = self.ways[k].contact else { continue };
+            if is_doubtful {
+                measured.doubtful.push(contact);
+            }
+            let of_way = beyond.map(|inside| (contact, self.ways[k].body, inside));
+            measured.beyond = measured.beyond.or(of_way);
         }
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
-            if let Some((body, inside)) = self.folded(model, contact, &state.y) {
-                deepest.add(inside.depth, false);
-                beyond = beyond.or((inside.depth > inside.limit).then_some((k, body, inside)));
+            if let Some((body, inside, length)) = self.folded(model, contact, &state.y) {
+                measured.add(k, false, inside.depth, length);
+                let is_beyond = inside.depth > inside.limit;
+                measured.beyond = measured.beyond.or(is_beyond.then_some((k, body, inside)));
             }
         }
         for (contact, part, pierced) in self.pierced(model, &state.y) {
-            let Pierced { node, place, depth, counts, limit, .. } = pierced;
+            let Pierced { node, place, depth, counts, limit, length, .. } = pierced;
             if depth > counts || state.closed(contact, place).is_some() {
-                deepest.add(depth, pierced.is_held && counts == 0.0);
+                let length = if counts > 0.0 { f64::INFINITY } else { length };
+                measured.add(contact, pierced.is_held && counts == 0.0, depth, length);
             }
             let inside = Inside { node, what: What::Obstacle, depth, limit };
-            beyond = beyond.or((depth > limit).then_some((contact, part, inside)));
+            measured.beyond = measured.beyond.or((depth > limit).then_some((contact, part, inside)));
         }
-        for contact in model.contacts.iter().filter(|contact| has_gaps(model, contact)) {
-            for node in 0..contact.kinematics.nodes() {
-                let gap = contact.kinematics.signed_distance(node, &state.y);
-                deepest.add(-gap.unwrap_or(0.0), true);
+        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact))
+        {
+            let lengths = &self.lengths[k];
+            let length = |node: usize| lengths.get(&node).copied().unwrap_or(f64::INFINITY);
+            for (place, &node) in
+                contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes())
+            {
+                let gap = contact.kinematics.signed_distance(place, &state.y);
+                measured.add(k, true, -gap.unwrap_or(0.0), length(node));
             }
-            below_obstacle(contact, &state.y).for_each(|(_, depth)| deepest.add(depth, false));
+            below_obstacle(contact, &state.y)
+                .for_each(|(node, depth)| measured.add(k, false, depth, length(node)));
         }
-        (deepest, beyond)
+        measured.doubtful.sort_unstable();
+        measured.doubtful.dedup();
+        measured
     }
 
     /// The deepest node of a body in contact with itself where its boundary crosses itself, pair or
-    /// not.
-    fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside)> {
+    /// not, with the body and the length of the facet that the node entered.
+    fn folded(&mut self, model: &Model, contact: &Contact, y: &[f64]) -> Option<(usize, Inside, f64)> {
         let body = contact.primary_part?;
         let skin = self.skins[body].as_mut()?;
         if !std::mem::replace(&mut self.current[body], true) {
@@ -215,6 +269,7 @@ impl Penetration {
         (depth > CHORDS * length).then_some((
             body,
             Inside { node, what: What::Node, depth, limit: contact.depths.others * length },
+            length,
         ))
     }
 
@@ -263,18 +318,12 @@ impl Penetration {
         self.current.resize(model.parts.len(), false);
     }
 
-    /// Depths of the nodes of a way, and the node that is furthest beyond its limit.
-    pub(crate) fn deepest(
-        &mut self,
-        model: &Model,
-        way: usize,
-        state: Option<&State>,
-    ) -> (Depths, Option<Inside>) {
+    /// Depths of the nodes of a way.
+    pub(crate) fn deepest(&mut self, model: &Model, way: usize, state: Option<&State>) -> Deepest {
         let Self { skins, kinks, ways, y, current, paired, rows, .. } = self;
         let Way { contact, body, itself, nodes, first, .. } = &mut ways[way];
-        let mut deepest = Depths::default();
-        let mut worst = None::<Inside>;
-        let Some(skin) = skins[*body].as_mut() else { return (deepest, worst) };
+        let mut found = Deepest::default();
+        let Some(skin) = skins[*body].as_mut() else { return found };
         paired.clear();
         let kinks = &kinks[*body];
         let of_facet = |facet: &[usize]| Entered {
@@ -327,14 +376,14 @@ impl Penetration {
                 }
                 let entered = |facet: usize| of_facet(skin.facet_nodes(facet));
                 if let Some(side) = *itself {
-                    let found = skin.depth_of(node, side, watched.reach, y);
-                    watched.clearance = found.map_or(watched.reach, |found| found.distance);
-                    let Some(found) = found else { continue };
-                    (-found.distance - watched.kept, entered(found.facet))
+                    let nearest = skin.depth_of(node, side, watched.reach, y);
+                    watched.clearance = nearest.map_or(watched.reach, |nearest| nearest.distance);
+                    let Some(nearest) = nearest else { continue };
+                    (-nearest.distance - watched.kept, entered(nearest.facet))
                 } else {
                     // No deeper than any point of the boundary is away: neither the deepest nor too
                     // deep.
-                    let known = if watched.constrained { deepest.constrained } else { deepest.all };
+                    let known = if watched.constrained { found.depths.constrained } else { found.depths.all };
                     let point = watched.point(y, model.dimension);
                     if let Some((facet, xi)) = watched.near {
                         let bound = skin.distance(facet, xi, point, y);
@@ -342,17 +391,19 @@ impl Penetration {
                             continue;
                         }
                     }
-                    let Some(found) = skin.depth(point, watched.near.map(|near| near.0), y) else {
+                    let Some(nearest) = skin.depth(point, watched.near.map(|near| near.0), y) else {
                         continue;
                     };
-                    (watched.clearance, watched.near) = (found.distance, Some((found.facet, found.xi)));
-                    (-found.distance - watched.kept, entered(found.facet))
+                    watched.clearance = nearest.distance;
+                    watched.near = Some((nearest.facet, nearest.xi));
+                    (-nearest.distance - watched.kept, entered(nearest.facet))
                 }
             };
-            if depth > deepest.all {
+            if depth > found.depths.all {
                 *first = k;
             }
-            deepest.add(depth, watched.constrained);
+            found.depths.add(depth, watched.constrained);
+            found.is_doubtful |= depth > DOUBTFUL * entered.length;
             let mut limit = watched.limit(entered.length);
             if watched.constrained
                 && entered.is_at_kink
@@ -360,12 +411,12 @@ impl Penetration {
             {
                 limit = limit.max(model.contacts[k].depths.kinks * entered.length);
             }
-            if depth > limit && worst.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
+            if depth > limit && found.beyond.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 let what = if watched.between.is_empty() { What::Node } else { What::Edge };
-                worst = Some(Inside { node, what, depth, limit });
+                found.beyond = Some(Inside { node, what, depth, limit });
             }
         }
-        (deepest, worst)
+        found
     }
 
     /// As the function [`inside`], for positions that follow each other. What is measured so is not
@@ -381,8 +432,8 @@ impl Penetration {
         }
         let mut found: Vec<(usize, usize, f64)> = Vec::new();
         for k in 0..self.ways.len() {
-            let (_, deepest) = self.deepest(model, k, None);
-            let of_contact = deepest.zip(self.ways[k].contact);
+            let deepest = self.deepest(model, k, None);
+            let of_contact = deepest.beyond.zip(self.ways[k].contact);
             found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
         }
         // Chords of facets lie in what their nodes touch.
@@ -419,7 +470,7 @@ fn below_obstacle<'a>(contact: &'a Contact, y: &'a [f64]) -> impl Iterator<Item 
 
 /// Penetration at a state.
 pub fn penetration(model: &Model, state: &State) -> Depths {
-    Penetration::of_contacts(model).measure(model, state).0
+    Penetration::of_contacts(model).measure(model, state).depths
 }
 
 /// The deepest node of each contact in which a node lies deeper than `limit` at positions `y`:
@@ -466,7 +517,7 @@ mod tests {
         let model = model(parts, &[], Motions::default(), Loads::default(), vec![strike]);
         let mut penetration = Penetration::of_contacts(&model);
         penetration.begin(&model, &model.reference);
-        (0..penetration.ways.len()).find_map(|way| penetration.deepest(&model, way, None).1)
+        (0..penetration.ways.len()).find_map(|way| penetration.deepest(&model, way, None).beyond)
     }
 
     #[test]

@@ -102,6 +102,7 @@ impl Undeclared {
                 self.obstacles.iter().any(|beside| beside.contact == contact)
             }
             Overlap::Between { contact, .. } => self.between.has_tips(contact),
+            Overlap::Sides { .. } => false,
         }
     }
 
@@ -117,7 +118,7 @@ impl Undeclared {
         self.between.begin(model, y);
         let mut found = Vec::new();
         for k in 0..self.between.ways.len() {
-            if let (_, Some(inside)) = self.between.deepest(model, k, None)
+            if let Some(inside) = self.between.deepest(model, k, None).beyond
                 && let Some(part) = part_of(model, inside.node)
             {
                 let body = self.between.ways[k].body;

@@ -23,7 +23,7 @@ pub(crate) use scratch::Scratch;
 use carom_algebra::sums::max_abs;
 use carom_contact::PairEvent;
 
-use crate::check::penetration::Depths;
+use crate::check::penetration::{Depths, Measured};
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::settings::Linear;
@@ -55,6 +55,8 @@ pub struct StepReport {
     pub restitution: f64,
     /// Penetration at the end.
     pub penetration: Depths,
+    /// Contacts of which a node is then deeper than a tenth of the facet that it entered.
+    pub doubtful: Vec<usize>,
 }
 
 /// An accepted step: finite, converged, without penetration or inverted cells. Only a stepper
@@ -82,7 +84,9 @@ impl Accepted {
         let checked = timed(&mut timings.assembly, || valid_cells.check(model, &state.y))
             .and_then(|()| timed(&mut timings.contact, || penetration.check(model, &state)));
         match checked {
-            Ok(penetration) => Ok(Self { state, report: StepReport { penetration, ..report } }),
+            Ok(Measured { depths, doubtful, .. }) => {
+                Ok(Self { state, report: StepReport { penetration: depths, doubtful, ..report } })
+            }
             Err(rejected) => {
                 trace.end(&state.y);
                 Err(rejected)

@@ -5,9 +5,8 @@ use std::collections::{HashMap, HashSet};
 
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
-    BothSides, Boundary, ContactPoint, Detection, EdgeToEdge, Joined, Kinematics, Mortar, NodeToFacet,
-    NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet, WithEdges,
-    WithTips,
+    Boundary, Combined, ContactPoint, Detection, EdgeToEdge, Kinematics, Mortar, NodeToFacet, NodeToObstacle,
+    NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
 
@@ -72,18 +71,18 @@ impl Bodies<'_> {
                 .with_single_facets(single)
                 .of_body(own.clone())
         };
-        let both = BothSides::new(nodes, against(theirs.clone(), &side, &opposite));
+        let both = Combined::both(nodes, against(theirs.clone(), &side, &opposite).reversed());
         if spec.method == case::Method::NodeToSegment {
             return Box::new(both);
         }
         let ours = self.others(secondary, &of_secondary[0], primary, &corners(&opposite));
         let [ours, theirs] = [ours, theirs].map(|nodes| bounded(spec, nodes));
-        let single = BothSides::new(against(ours, &opposite, &side), against(theirs, &side, &opposite));
-        let mortar = integrated(spec, Mortar::new(opposite, side, self.reference, both));
-        Box::new(Joined::new(mortar, single))
+        let single =
+            Combined::both(against(ours, &opposite, &side), against(theirs, &side, &opposite).reversed());
+        Box::new(Combined::both(integrated(spec, Mortar::new(opposite, side, self.reference, both)), single))
     }
 
-    fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> WithEdges {
+    fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> Combined {
         let of_secondary = self.siblings(k, secondary.part, Which::Secondary);
         let of_primary = self.siblings(k, primary.part, Which::Primary);
         let side = self.boundary(primary, &of_primary.concat());
@@ -100,8 +99,9 @@ impl Bodies<'_> {
         let others = NodeToPatch::new(own.nodes, opposite)
             .with_allowed(own.depths)
             .with_single_facets(single)
-            .of_body(side);
-        WithEdges::new(BothSides::new(nodes, others), edges)
+            .of_body(side)
+            .reversed();
+        Combined::new(vec![Box::new(nodes), Box::new(others), Box::new(edges)])
     }
 
     /// Contact with a rigid obstacle, in the plane with its convex parts.
@@ -127,7 +127,7 @@ impl Bodies<'_> {
         match self.case.contacts[k].method {
             case::Method::Mortar => self.mortar_with_obstacle(k, side, surface, obstacle, tips),
             case::Method::NodeToSegment => match tips {
-                Some(tips) => Box::new(WithTips::new(obstacle, tips)),
+                Some(tips) => Box::new(Combined::both(obstacle, tips)),
                 None => Box::new(obstacle),
             },
         }
@@ -147,11 +147,9 @@ impl Bodies<'_> {
         let single = bounded(spec, self.others(side, &[], side, &surface.corners(self.reference)));
         let single = obstacle.of_nodes(&single);
         let mortar = integrated(spec, Mortar::with_obstacle(surface, obstacle, self.reference));
-        let mortar = Joined::new(mortar, single);
-        match tips {
-            Some(tips) => Box::new(Joined::new(mortar, tips)),
-            None => Box::new(mortar),
-        }
+        let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(mortar), Box::new(single)];
+        parts.extend(tips.map(|tips| Box::new(tips) as Box<dyn Kinematics>));
+        Box::new(Combined::new(parts))
     }
 
     /// Whether a node over a joint has a pair with one facet: springs chatter, and load steps in
@@ -162,13 +160,13 @@ impl Bodies<'_> {
         spec.enforcement == case::Enforcement::Penalty || spec.friction.exists() && rests_in_space
     }
 
-    fn itself(&self, k: usize, side: &Side) -> BothSides<NodeToFacet> {
+    fn itself(&self, k: usize, side: &Side) -> Combined {
         let surface = self.surface(side, &[]);
         let earlier = self.others(side, &[], side, &surface.corners(self.reference));
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
         let single = self.has_single_facets(k);
-        BothSides::of_itself(
+        NodeToFacet::of_itself(
             &surface,
             side.nodes.clone(),
             earlier,
@@ -179,14 +177,14 @@ impl Bodies<'_> {
         )
     }
 
-    fn itself_in_space(&self, k: usize, side: &Side) -> WithEdges {
+    fn itself_in_space(&self, k: usize, side: &Side) -> Combined {
         let boundary = self.boundary(side, &[]);
         let sharp = boundary.nodes_of_sharp_edges(self.reference);
         let earlier = self.others(side, &[], side, &sharp);
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
         let single = self.has_single_facets(k);
-        WithEdges::of_itself(
+        NodeToPatch::of_itself(
             &boundary,
             side.nodes.clone(),
             earlier,

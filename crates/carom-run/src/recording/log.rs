@@ -116,6 +116,12 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             );
             Event::new(step, *time, "between-nodes", message).with("place", place).with("contact", name)
         }
+        LogEvent::Overlap { time, overlap: Undeclared::Sides { contact } } => {
+            let name = contact_name(*contact);
+            let message =
+                format!("contact \"{name}\": a node is deeper than a tenth of the facet that it entered");
+            Event::new(step, *time, "deep", message).with("contact", name)
+        }
         LogEvent::Ambiguous { time, regularity } => {
             let message = format!(
                 "friction so large that stick and slip are not unique: the matrix of the contacts has the smallest singular value {:.3e}, \

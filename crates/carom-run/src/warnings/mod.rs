@@ -51,7 +51,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 24] = [
+pub const WARNINGS: [Entry; 25] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -169,6 +169,12 @@ pub const WARNINGS: [Entry; 24] = [
               enter the body, and the contact is too soft or absent there",
         advice: "nodes of the body along the edge, on the obstacle's side of it, or a finer mesh there; or a stiff body in place of the obstacle, whose edges and corners are held",
         rule: Rule::Record(record::edge_between_nodes),
+    },
+    Entry {
+        id: "deep-penetration",
+        why: "where bodies penetrate each other by so much, place and size of the contact forces are wrong by as much",
+        advice: "a shorter step, or a finer mesh at the contact",
+        rule: Rule::Record(record::deep_penetration),
     },
     Entry {
         id: "large-rotation",

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_case::{Case, ContactSpec};
+use carom_case::{Case, ContactSpec, Enforcement, Method};
 use carom_mechanics::model::Model;
 use carom_record::metrics::{self, MUCH_CREATED};
 use carom_record::{Event, Run};
@@ -64,6 +64,27 @@ pub(super) fn edge_between_nodes(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
         Some(Found::of_contact(text("contact")?, what))
     });
     entered.collect()
+}
+
+/// Contacts of which a node was deeper in the other side than a tenth of the facet that it entered.
+pub(super) fn deep_penetration(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let deep = events(run, "deep").filter_map(|event| {
+        let name = event.data.get("contact")?.as_str()?;
+        let contact = case.contacts.iter().find(|contact| contact.name == name)?;
+        let what = format!(
+            "from t = {} on a node lay deeper in the other side than a tenth of the facet that it entered",
+            short(event.time)
+        );
+        let advice = match (contact.enforcement, contact.method) {
+            (Enforcement::Penalty | Enforcement::Augmented, _) => {
+                "a larger stiffness, or enforcement = \"multiplier\""
+            }
+            (_, Method::Mortar) => "a finer mesh at the contact, or method = \"node-to-segment\"",
+            _ => "a shorter step, a finer mesh at the contact, or a scheme whose contact acts on positions",
+        };
+        Some(Found::of_contact(name, what).with_advice(advice.to_owned()))
+    });
+    deep.collect()
 }
 
 /// Bodies that overlapped, or lay in a rigid obstacle, where no contact between them acts.

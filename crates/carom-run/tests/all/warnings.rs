@@ -95,6 +95,35 @@ pub(super) fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
     recorded_in_full(text, sets).into_iter().map(|w| w.id).collect()
 }
 
+/// Springs under a block, whose facets are 0.25 long, let it sink by as much as they are soft: into
+/// another block, and into a rigid floor.
+#[test]
+fn sides_deeper_than_a_tenth_of_a_facet() {
+    const BLOCKS: &str = include_str!("../../../../cases/static/blocks.toml");
+    const FLOOR: &str = "contact.joint.primary={ plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
+    const PRESSED: [&str; 3] = [
+        "time.step=0.05",
+        "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }",
+        "contact.joint.enforcement=penalty",
+    ];
+    let mut given = Vec::new();
+    for other in [&[][..], &[FLOOR]] {
+        for stiffness in [0.01, 1.0] {
+            let springs = format!("contact.joint.stiffness={stiffness}");
+            let sets = [other, &PRESSED, &[&*springs]].concat();
+            let mut simulation = simulation(BLOCKS, &sets);
+            let mut deepest = 0.0_f64;
+            while !simulation.finished() {
+                deepest = deepest.max(simulation.step().unwrap().penetration.all);
+            }
+            let is_warned = recorded(BLOCKS, &sets).iter().any(|id| id == "deep-penetration");
+            assert_eq!(is_warned, deepest > 0.025, "{sets:?}: {deepest}");
+            given.push(is_warned);
+        }
+    }
+    assert_eq!(given, [true, false, true, false]);
+}
+
 /// The bar lies inside a wall that is turned away from it, also if only its end touches the
 /// surface.
 #[test]

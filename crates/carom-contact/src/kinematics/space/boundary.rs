@@ -157,28 +157,6 @@ impl Boundary {
         patch.at(y, if patch.corners() == 3 { [1.0 / 3.0; 2] } else { [0.0; 2] })
     }
 
-    /// The facets of the side on whose edges a node lies, with its coordinates on them.
-    pub(crate) fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
-        let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
-        let at = |&facet: &usize| {
-            let patch = self.patch(facet);
-            let count = patch.corners();
-            let degree = self.shape.degree();
-            let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
-            // Behind the corners come the inner nodes of edge after edge.
-            let xi = match place.checked_sub(count) {
-                None => patch.corner(place),
-                Some(inner) => {
-                    let edge = inner / (degree - 1);
-                    let k = inner % (degree - 1);
-                    patch.along(edge, (k + 1) as f64 / degree as f64)
-                }
-            };
-            Some(OnFacet { facet, xi })
-        };
-        around.filter_map(at).collect()
-    }
-
     /// The facet across an edge of a facet, if there is one.
     pub(crate) fn across(&self, facet: usize, edge: usize) -> Option<usize> {
         self.neighbours[facet][edge].map(|neighbour| neighbour.facet)
@@ -421,6 +399,27 @@ impl Boundary {
 }
 
 impl Facets<3> for Boundary {
+    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
+        let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
+        let at = |&facet: &usize| {
+            let patch = self.patch(facet);
+            let count = patch.corners();
+            let degree = self.shape.degree();
+            let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
+            // Behind the corners come the inner nodes of edge after edge.
+            let xi = match place.checked_sub(count) {
+                None => patch.corner(place),
+                Some(inner) => {
+                    let edge = inner / (degree - 1);
+                    let k = inner % (degree - 1);
+                    patch.along(edge, (k + 1) as f64 / degree as f64)
+                }
+            };
+            Some(OnFacet { facet, xi })
+        };
+        around.filter_map(at).collect()
+    }
+
     fn shape(&self) -> FacetShape {
         self.shape
     }

@@ -2,12 +2,12 @@
 //! crosses, else the nearest one that it was not behind before.
 
 use super::crossing::crossing;
-use super::node_to_patch::{NodeToPatch, PAST, REACH};
+use super::node_to_patch::{NEAR_END, NodeToPatch, PAST, REACH};
 use super::patch::place;
 use super::paths::{NOISE, Paths, path};
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::way::Met;
-use crate::kinematics::{Kinematics, OnFacet, OneWay, SpaceHit, SweptPatch};
+use crate::kinematics::{Kinematics, OnFacet, SpaceHit, SweptPatch};
 use crate::pair::Pair;
 
 /// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
@@ -191,7 +191,7 @@ impl NodeToPatch {
             let patch = self.primary.patch(facet);
             let xi = patch.closest_point(now, end, REACH)?;
             let from = patch.closest_point(before, start, REACH)?;
-            let past = Self::NEAR_END * patch.length(before);
+            let past = NEAR_END * patch.length(before);
             let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
                 && self.gap(facet, from, start, before) + slack >= -AROUND * past;

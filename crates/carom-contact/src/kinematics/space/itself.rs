@@ -1,4 +1,4 @@
-//! A boundary in space against itself, in the two directions of `../both_sides.rs`: all nodes as
+//! A boundary in space against itself, in the two directions of `../reversed.rs`: all nodes as
 //! those of the later place, with the facets that come before them, and as those of the earlier
 //! one, with the facets that come after them. Of two sharp edges the later one is secondary.
 
@@ -10,9 +10,9 @@ use super::edge_to_edge::EdgeToEdge;
 use super::folds::PatchFolds;
 use super::node_to_patch::{NodeToPatch, PAST};
 use super::paths::Paths;
-use crate::kinematics::{BothSides, NodesWithDepth, Side, WithEdges};
+use crate::kinematics::{Combined, NodesWithDepth, Side};
 
-impl WithEdges {
+impl NodeToPatch {
     /// A side against itself: its nodes in the role of the later place, and those in the role of
     /// the earlier one, whose depth is zero at sharp edges; `piece`: the connected piece of its
     /// body to which each node belongs, from `first_node` on; `reference`: the reference positions,
@@ -25,7 +25,7 @@ impl WithEdges {
         first_node: usize,
         reference: &[f64],
         single: bool,
-    ) -> Self {
+    ) -> Combined {
         let folds = Arc::new(PatchFolds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
             let nodes = NodeToPatch::new(nodes, side.clone()).with_single_facets(single);
@@ -33,13 +33,10 @@ impl WithEdges {
         };
         let others = [BTreeSet::new(), BTreeSet::new()];
         let edges = EdgeToEdge::new([side.clone(), side.clone()], &others, reference).folding(folds.clone());
-        let reverse = of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths);
-        let both = BothSides::new(of(nodes, Side::Later), reverse);
-        Self::new(both, edges)
+        let reverse = of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths).reversed();
+        Combined::new(vec![Box::new(of(nodes, Side::Later)), Box::new(reverse), Box::new(edges)])
     }
-}
 
-impl NodeToPatch {
     /// Whether a node must not form a pair with a facet: one that contains the node, one across its
     /// wall, or one that the other direction of contact compares it with.
     pub(super) fn excludes(&self, node: usize, facet: usize) -> bool {

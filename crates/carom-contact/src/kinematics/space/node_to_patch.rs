@@ -30,9 +30,10 @@ use crate::kinematics::hand_over::{Held, Next, Sliding};
 use crate::kinematics::joint::{AT_JOINT, OnFacets};
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
+use crate::kinematics::reversed::{Corners, Faced};
 use crate::kinematics::rounding::rounding;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Facets, Kinematics, OnFacet, OneWay, Passed, Side, SweptPatch};
+use crate::kinematics::{Facets, Kinematics, OnFacet, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
@@ -54,6 +55,9 @@ pub(super) const PAST: f64 = 1e-9;
 /// which a closest point is past it: blocks that are pressed together edge to edge bulge
 /// differently, and where two edges of either meet neither corner faces the other block.
 const PAST_SIDE: f64 = 2e-2;
+/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node of
+/// the other side meet: just where the node begins to face the side.
+pub(super) const NEAR_END: f64 = 0.5 * PAST_SIDE;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
 /// node out that would be handed to and fro between them: two rows would depend on each other.
 const FLAT: f64 = 1e-9;
@@ -74,6 +78,8 @@ pub struct NodeToPatch {
     /// The boundary of the body to which the secondary nodes belong.
     own: Option<Boundary>,
     single: bool,
+    /// For nodes of the primary side against the secondary one: their corners.
+    reversed: Option<Corners>,
     tools: Mutex<Tools>,
 }
 
@@ -103,6 +109,7 @@ impl NodeToPatch {
             folds: None,
             own: None,
             single: false,
+            reversed: None,
             tools,
         }
     }
@@ -155,6 +162,26 @@ impl NodeToPatch {
             let may_press = self.may_press(node, before, |facet| paths.middle(facet));
             near.retain(|&facet| !self.primary.is_mirror(facet) && may_press(facet));
         }
+    }
+
+    /// Contact of nodes of the primary side with the secondary one (`../reversed.rs`), once the body
+    /// of the nodes and their depths are known.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        let corners = self
+            .own
+            .as_ref()
+            .map(|own| Corners::new(own, &self.secondary, |place| self.allowed(place), NEAR_END));
+        Self { reversed: Some(corners.unwrap_or_default()), ..self }
+    }
+
+    /// Whether the pair of a corner of the primary side is left to a node of its facet.
+    fn is_left_to_node(&self, pair: &Pair, y: &[f64]) -> bool {
+        let (Some(corners), Some(own)) = (&self.reversed, &self.own) else { return false };
+        let node = self.secondary[pair.node];
+        let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
+        let corner = Faced { place: pair.node, node, at, kept: self.kept(pair.node) };
+        corners.is_left_to_node(corner, [own, &self.primary], y)
     }
 
     /// Contact of nodes of the primary side with that side itself.
@@ -354,30 +381,6 @@ impl NodeToPatch {
     }
 }
 
-impl OneWay for NodeToPatch {
-    const NEAR_END: f64 = 0.5 * PAST_SIDE;
-
-    fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
-        self.primary.facets_at(node)
-    }
-
-    fn nodes_of(&self, facet: usize) -> &[usize] {
-        self.primary.nodes_of(facet)
-    }
-
-    fn normal(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> [f64; 3] {
-        self.primary.patch(facet).at(y, xi).normal.0
-    }
-
-    fn length(&self, facet: usize, y: &[f64]) -> f64 {
-        self.primary.patch(facet).length(y)
-    }
-
-    fn offset(&self, from: usize, to: usize, y: &[f64]) -> Vector<3> {
-        place(y, to) - place(y, from)
-    }
-}
-
 impl Kinematics for NodeToPatch {
     fn secondary(&self) -> &[usize] {
         &self.secondary
@@ -492,7 +495,14 @@ impl Kinematics for NodeToPatch {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        self.measure_mean(pair, y, rows)
+        if !pair.active && self.is_left_to_node(pair, y) {
+            rows.push_open();
+            return Ok(());
+        }
+        let first = rows.len();
+        self.measure_mean(pair, y, rows)?;
+        rows.reverse_from(first, self.reversed.is_some());
+        Ok(())
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
@@ -500,7 +510,10 @@ impl Kinematics for NodeToPatch {
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        self.slip_of_mean(pair, y, rows)
+        let first = rows.len();
+        self.slip_of_mean(pair, y, rows)?;
+        rows.reverse_from(first, self.reversed.is_some());
+        Ok(())
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
