@@ -58,7 +58,9 @@ SHARP = {"bathe", "tr-bdf2", "backward-euler", "energy-momentum", "moreau-jean"}
 DAMPED = {"hu", "backward-euler", "bdf2", "moreau-jean", "nonsmooth-generalized-alpha", "paoli-schatzman", "wbz"}
 # Names of warnings, or words in them, that tell of a violation that a judge finds.
 DEEP = ("undeclared-contact", "penetration", "deep", "overlap")
-SAYS = {"energy": ("energy-created", "hidden-energy"), "field": DEEP, "corner": DEEP, "apart": DEEP}
+SAYS = {"energy": ("energy-created", "hidden-energy")} | dict.fromkeys(
+    ("field", "corner", "apart", "nodes", "edges", "self"), DEEP
+)
 # Rows after a contact from which the velocities of an α scheme contain all momentum.
 AFTER = 25
 

@@ -15,7 +15,7 @@ parameters are random (ladder_cases.py, in space ladder_space_cases.py). A case 
     right      exit 0 and nothing wrong in the record
     wrong      exit 0, but bodies penetrate or pass through, or energy is created without a warning
     marked     exit 0 with the warning that energy was created, and nothing else wrong
-    warned     exit 0, wrong, and warnings of the record with a place say so (aligned cases only)
+    warned     exit 0, wrong, and warnings of the record with a place say so
     stopped    exit 3, with the reason of the manifest
     timeout    killed after --timeout seconds of wall time
     refused    exit 2: the case was refused before it ran, rightly (a fault of the generator) or not
@@ -169,8 +169,10 @@ def judged(row, out):
         row["wrong"], row["contacts"] = "; ".join(found["wrong"]), found.get("contacts", "")
         row["warnings"] = " ".join(found.get("warnings", []))
         if outcome == "right":
-            row["outcome"] = "wrong" if found["wrong"] else "marked" if found["marked"] else "right"
-            row["kind"] = ", ".join(sorted({w.split(":")[0] for w in found["wrong"]}))
+            kinds = {w.split(":")[0] for w in found["wrong"]}
+            warnings = json.loads((out / "manifest.json").read_text())["warnings"]
+            row["outcome"] = "marked" if found["marked"] and not kinds else aligned_judge.outcome(kinds, warnings)
+            row["kind"] = ", ".join(sorted(kinds))
 
 
 def judge_again(folder, aligned):

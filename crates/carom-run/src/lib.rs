@@ -9,6 +9,7 @@ pub mod recording;
 mod reduce;
 mod saved_state;
 mod setup;
+mod thread_count;
 mod warnings;
 mod waves;
 
@@ -22,5 +23,6 @@ pub use carom_mechanics::{
 pub use overlap::{OverlapNode, overlapping};
 pub use reduce::{NEEDED, ReduceError, Reduced, reduce};
 pub use setup::Setup;
+pub use thread_count::ThreadCount;
 pub use warnings::{Entry, Found, Rule, WARNINGS, warnings};
 pub use waves::crossing;

@@ -17,6 +17,7 @@ use crate::build::{Materials, build, overlaps};
 use crate::initial::{before, given, on_the_grid, saved};
 use crate::overlap;
 use crate::quantity::{at_most, quantity};
+use crate::thread_count::ThreadCount;
 
 /// A case on its way to a simulation: with how many threads, and with laws and a time integrator of
 /// your own in place of the case's.
@@ -53,7 +54,7 @@ use crate::quantity::{at_most, quantity};
 /// ```
 pub struct Setup<'a> {
     case: &'a Case,
-    threads: usize,
+    threads: ThreadCount,
     materials: Materials,
     kernel: Option<Box<dyn Kernel>>,
 }
@@ -61,13 +62,13 @@ pub struct Setup<'a> {
 impl<'a> Setup<'a> {
     /// The case as it is, on one thread.
     pub fn new(case: &'a Case) -> Self {
-        Self { case, threads: 1, materials: Materials::new(), kernel: None }
+        Self { case, threads: 1.into(), materials: Materials::new(), kernel: None }
     }
 
     /// Computes with this many threads; results are bitwise identical for any number.
     #[must_use]
-    pub fn threads(self, threads: usize) -> Self {
-        Self { threads, ..self }
+    pub fn threads(self, threads: impl Into<ThreadCount>) -> Self {
+        Self { threads: threads.into(), ..self }
     }
 
     /// Gives the bodies of a material another law. Density, and what `carom check` derives from
@@ -122,6 +123,7 @@ impl<'a> Setup<'a> {
         if let Some(rejected) = inverted(case, &model).filter(|_| !placed) {
             return Err(vec![no_start(case, placed, &rejected)].into());
         }
+        let threads = self.threads.of(model.reference.len());
         let overlaps =
             if placed { Vec::new() } else { overlaps(case, &model, |overlap| overlap != Overlap::Relax) };
         let problems = [overlaps, too_long(case, &model)].concat();
@@ -131,13 +133,13 @@ impl<'a> Setup<'a> {
         let before: Option<InitialState> = match (&case.initial, &model.loads.manufactured) {
             (Some(initial), _) => Some(before(initial, case, &model)?),
             (None, Some(motion)) => Some(given(motion, &model)?),
-            (None, None) => overlap::relaxed(case, &model, &self.materials, self.threads)?,
+            (None, None) => overlap::relaxed(case, &model, &self.materials, threads)?,
         };
         let fallback = fallback(case, &model, self.kernel.as_deref());
         let stepper = stepper(case, &model, self.kernel)?;
         let inertia = !case.time.scheme.is_static();
         let grid = grid(case, overlap::floor(case, &model));
-        Simulation::new(model, stepper, grid, inertia, before, self.threads)
+        Simulation::new(model, stepper, grid, inertia, before, threads)
             .map(|simulation| simulation.with_fallback(fallback))
             .map_err(|rejected| vec![no_start(case, placed, &rejected)].into())
     }
@@ -152,7 +154,8 @@ impl<'a> Setup<'a> {
         let fallback = fallback(self.case, &model, self.kernel.as_deref());
         let stepper = stepper(self.case, &model, self.kernel)?;
         let grid = grid(self.case, overlap::floor(self.case, &model));
-        let resumed = Simulation::resume(model, stepper, grid, state, self.threads);
+        let threads = self.threads.of(model.reference.len());
+        let resumed = Simulation::resume(model, stepper, grid, state, threads);
         resumed.map(|simulation| simulation.with_fallback(fallback)).map_err(|other| {
             let why = "a run is resumed from a state of the same case";
             vec![Problem::new("", other.to_string(), why, "give a state of this case")].into()

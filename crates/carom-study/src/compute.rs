@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use carom_record::study::{Arm, StudyManifest};
+use carom_run::ThreadCount;
 use carom_run::case::Case;
 use carom_run::recording::{self, Progress, RunError};
 
@@ -16,7 +17,7 @@ pub(crate) fn compute(
     directory: &Path,
     i: usize,
     begun: bool,
-    threads: usize,
+    threads: ThreadCount,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {

@@ -71,12 +71,12 @@ pub fn arm(
         return Ok(ended);
     }
     comparable(&manifest, directory)?;
-    match compute(&manifest, directory, i, record.is_some(), 1, observe, stop) {
+    match compute(&manifest, directory, i, record.is_some(), 1.into(), observe, stop) {
         // Another process created it since.
         Err(StudyError::Arm { source: RunError::Record(RecordError::Exists { path }), .. }) => {
             match ended(&Manifest::read(&path).map_err(damaged)?) {
                 Some(ended) => Ok(ended),
-                None => compute(&manifest, directory, i, true, 1, observe, stop),
+                None => compute(&manifest, directory, i, true, 1.into(), observe, stop),
             }
         }
         other => other,

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
 
 use carom_record::Status;
+use carom_run::ThreadCount;
 use carom_run::recording::{self, End, Progress};
 
 /// An event of an arm, given by its number.
@@ -43,8 +44,9 @@ impl Ended {
 }
 
 /// Number of threads of each of `jobs` concurrent runs, which share those of the machine.
-pub(crate) fn threads(jobs: usize) -> usize {
-    (std::thread::available_parallelism().map_or(1, usize::from) / jobs.max(1)).max(1)
+pub(crate) fn threads(jobs: usize) -> ThreadCount {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    ThreadCount::UpTo((cores / jobs.max(1)).max(1))
 }
 
 /// Computes numbered runs, as many concurrently as there are jobs, started in the given order;

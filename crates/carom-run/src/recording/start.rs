@@ -15,6 +15,7 @@ use super::session::Session;
 use super::tally::{Tally, checkpoint, from_checkpoint};
 use super::verdicts::judged;
 use crate::setup::Setup;
+use crate::thread_count::ThreadCount;
 use crate::warnings::warnings;
 
 /// Runs a case into a directory that must not exist yet.
@@ -25,7 +26,7 @@ pub fn run(
     case: &Case,
     source: Source,
     directory: &Path,
-    threads: usize,
+    threads: impl Into<ThreadCount>,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
@@ -45,7 +46,7 @@ pub fn run(
 pub fn run_in_memory(
     case: &Case,
     source: Source,
-    threads: usize,
+    threads: impl Into<ThreadCount>,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<(Outcome, MemoryRecord), RunError> {
@@ -57,10 +58,15 @@ pub fn run_in_memory(
 }
 
 /// The simulation of a case at its start, and the manifest of its run.
-fn started(case: &Case, source: Source, threads: usize) -> Result<(Simulation, Manifest), RunError> {
+fn started(
+    case: &Case,
+    source: Source,
+    threads: impl Into<ThreadCount>,
+) -> Result<(Simulation, Manifest), RunError> {
     let simulation = Setup::new(case).threads(threads).start().map_err(RunError::Case)?;
     let resolved = case.to_json().map_err(|e| RunError::Incompatible { what: e.to_string() })?;
     let version = env!("CARGO_PKG_VERSION");
+    let threads = simulation.model().threads.count();
     let mut manifest = Manifest::new(version, case.facts(), resolved, source, history_columns(case), threads);
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
@@ -98,7 +104,7 @@ fn from_start(
 /// As [`run`], and if the record does not fit this version.
 pub fn resume(
     directory: &Path,
-    threads: usize,
+    threads: impl Into<ThreadCount>,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
@@ -112,7 +118,7 @@ pub fn resume(
 pub fn resume_with(
     directory: &Path,
     functions: Functions,
-    threads: usize,
+    threads: impl Into<ThreadCount>,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
@@ -163,7 +169,7 @@ pub fn resume_with(
     // The tables will be longer.
     manifest.hashes.clear();
     manifest.started = carom_record::now();
-    manifest.threads = threads;
+    manifest.threads = simulation.model().threads.count();
     let remarks = reopened.fallback.iter().map(ToString::to_string).collect();
     let mut writer = reopened.writer;
     let mut session = Session::new(case, simulation, &mut writer, manifest);

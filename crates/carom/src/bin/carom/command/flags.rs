@@ -2,6 +2,8 @@
 
 use std::num::NonZero;
 
+use carom::ThreadCount;
+
 use crate::exit::Failure;
 use crate::simulation::Options;
 
@@ -10,7 +12,8 @@ use crate::simulation::Options;
 #[allow(clippy::struct_excessive_bools)] // flags of the command line
 pub(crate) struct Flags {
     /// Number of threads of a run; results are bitwise identical for any number;
-    /// at most 64, or four per core if that is more [default: one per core]
+    /// at most 64, or four per core if that is more [default: one per core, and one for a model
+    /// too small for more to pay]
     #[arg(long, value_name = "N")]
     pub(crate) threads: Option<NonZero<usize>>,
     /// Do not write the figures or the report page
@@ -28,8 +31,9 @@ pub(crate) struct Flags {
 }
 
 impl Flags {
-    pub(crate) fn threads(&self) -> Result<usize, Failure> {
-        super::parallel("--threads", self.threads)
+    pub(crate) fn threads(&self) -> Result<ThreadCount, Failure> {
+        let count = super::parallel("--threads", self.threads)?;
+        Ok(if self.threads.is_some() { ThreadCount::Exactly(count) } else { ThreadCount::UpTo(count) })
     }
 
     pub(crate) fn options(&self, report: bool) -> Options {
