@@ -243,15 +243,14 @@ def show(run):
 
 
 def with_mortar(text):
-    """A case with mortar contact between sides of two bodies in the plane, if the scheme has it."""
+    """A case with mortar contact between sides of bodies in the plane, if the scheme has it."""
     case = tomllib.loads(text)
     if case["dimension"] != 2 or case["time"]["scheme"]["kind"] in WITHOUT_MORTAR:
         return text
     parts = re.split(r"(?m)^(?=\[\[contact\]\])", text)
     for i, part in enumerate(parts[1:], 1):
         contact = tomllib.loads(part)["contact"][0]
-        of_two = "between" not in contact and contact["primary"] != contact["secondary"]
-        if of_two and contact.get("law") != "predictor":
+        if contact.get("law") != "predictor":
             parts[i] = part.replace("[[contact]]\n", '[[contact]]\nmethod = "mortar"\n', 1)
     return "".join(parts)
 

@@ -12,6 +12,7 @@ use pyo3::types::PyDict;
 use crate::error::{of_case, of_problems, of_run};
 use crate::function::{functions, raised};
 use crate::record::Record;
+use crate::threads::thread_count;
 use crate::values::{from_json, from_table, to_document, to_toml};
 use crate::watched::watched;
 
@@ -115,7 +116,7 @@ impl Case {
         &self,
         py: Python<'py>,
         out: Option<PathBuf>,
-        threads: usize,
+        threads: Option<usize>,
         page: bool,
         given: &Bound<'py, PyDict>,
         report: Option<&Bound<'py, PyAny>>,
@@ -126,8 +127,9 @@ impl Case {
         let (done, interrupted) = watched(py, report, |show, stop| {
             let mut observe = |p: &Progress| show((p.step, p.steps, p.time));
             match &out {
-                Some(path) => recording::run(&case, source, path, threads, &mut observe, stop).map(|_| None),
-                None => recording::run_in_memory(&case, source, threads, &mut observe, stop)
+                Some(path) => recording::run(&case, source, path, thread_count(threads), &mut observe, stop)
+                    .map(|_| None),
+                None => recording::run_in_memory(&case, source, thread_count(threads), &mut observe, stop)
                     .map(|(_, record)| Some(record)),
             }
         })?;

@@ -13,16 +13,11 @@ mod record;
 mod simulation;
 mod study;
 mod tables;
+mod threads;
 mod values;
 mod watched;
 
 use pyo3::prelude::*;
-
-/// The largest number of threads, or of concurrent runs, that is accepted.
-#[pyfunction]
-fn most_concurrent() -> usize {
-    carom::record::Machine::current().most_concurrent()
-}
 
 #[pymodule]
 mod _carom {
@@ -32,13 +27,13 @@ mod _carom {
     #[pymodule_export]
     use crate::explain::{explain, schemes};
     #[pymodule_export]
-    use crate::most_concurrent;
-    #[pymodule_export]
     use crate::record::{Record, open, resume};
     #[pymodule_export]
     use crate::simulation::Simulation;
     #[pymodule_export]
     use crate::study::{study, study_arm, study_collect, study_plan, study_table};
+    #[pymodule_export]
+    use crate::threads::most_concurrent;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

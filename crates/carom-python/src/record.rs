@@ -13,6 +13,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::error::{of_record, of_run};
 use crate::function::{functions, raised};
 use crate::tables;
+use crate::threads::thread_count;
 use crate::values::from_json;
 use crate::watched::watched;
 
@@ -188,7 +189,7 @@ pub(crate) fn open(py: Python<'_>, path: PathBuf) -> PyResult<Record> {
 pub(crate) fn resume<'py>(
     py: Python<'py>,
     path: PathBuf,
-    threads: usize,
+    threads: Option<usize>,
     page: bool,
     given: &Bound<'py, PyDict>,
     report: Option<&Bound<'py, PyAny>>,
@@ -196,7 +197,7 @@ pub(crate) fn resume<'py>(
     let (functions, failure) = functions(given)?;
     let (done, interrupted) = watched(py, report, |show, stop| {
         let mut observe = |p: &Progress| show((p.step, p.steps, p.time));
-        recording::resume_with(&path, functions, threads, &mut observe, stop)
+        recording::resume_with(&path, functions, thread_count(threads), &mut observe, stop)
     })?;
     if let Some(error) = raised(&failure) {
         return Err(error);

@@ -17,6 +17,7 @@ use crate::error::{CaseError, of_problems};
 use crate::function::{Failure, functions, raised};
 use crate::law::Law;
 use crate::tables;
+use crate::threads::thread_count;
 
 pyo3::import_exception!(carom.errors, StoppedError);
 
@@ -66,7 +67,7 @@ impl Simulation {
     fn new(
         py: Python<'_>,
         case: &Case,
-        threads: usize,
+        threads: Option<usize>,
         given: &Bound<'_, PyDict>,
         laws: &Bound<'_, PyDict>,
     ) -> PyResult<Self> {
@@ -82,7 +83,7 @@ impl Simulation {
         remembered.sort();
         let spec = case.with(functions);
         let started = py.detach(|| {
-            let setup = Setup::new(&spec).threads(threads);
+            let setup = Setup::new(&spec).threads(thread_count(threads));
             let setup = own.into_iter().fold(setup, |setup, (material, law)| setup.material(&material, law));
             let library = setup.start()?;
             let rows = Rows::new(&spec, &library);

@@ -116,9 +116,8 @@ impl Check<'_> {
         add(what, why, hint);
     }
 
-    /// Reports what mortar contact does not have: other dimensions than the plane, contact of a
-    /// side with itself, schemes and laws with impulses, and the detection of the
-    /// paper.
+    /// Reports what mortar contact does not have: other dimensions than the plane, schemes and laws
+    /// with impulses, and the detection of the paper.
     fn mortar(&mut self, contact: &ContactSpec) {
         if contact.method != Method::Mortar {
             if contact.quadrature != Quadrature::Segments {
@@ -139,10 +138,6 @@ impl Check<'_> {
         if let Some(dimension @ (1 | 3)) = draft.dimension {
             let why = "its weights are integrals over curves in the plane";
             refuse(&format!("in dimension {dimension}"), why, nodes);
-        }
-        if contact.is_of_itself() {
-            let why = "its multipliers belong to one of two sides";
-            refuse("for contact of a side with itself", why, nodes);
         }
         if contact.detection == Detection::Trajectory || contact.xi == ContactPoint::Frozen {
             let why = "trajectories of single nodes do not decide about a gap that is an average";

@@ -27,8 +27,8 @@ const OFF_JOINT: f64 = 0.02;
 /// Excess |ξ| − 1 above which a closest point lies past a corner or the end of a side: where sides
 /// of equal length are pressed together, their ends bulge differently.
 pub(super) const PAST_SIDE: f64 = 1e-3;
-/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node of
-/// the other side meet: just where the node begins to face the side.
+/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node
+/// of the other side meet: just where the node begins to face the side.
 pub(super) const NEAR_END: f64 = 0.5 * PAST_SIDE;
 
 impl Surface {

@@ -154,6 +154,28 @@ impl Folds {
             && (own == other || self.pieces[own] != self.pieces[other])
     }
 
+    /// Whether points of two facets may be compared, of which the first comes later.
+    pub(crate) fn admits_facet(&self, own: usize, other: usize) -> bool {
+        let [run, opposite] = [own, other].map(|facet| self.of[facet]);
+        self.place[own] > self.place[other] && (run == opposite || self.pieces[run] != self.pieces[opposite])
+    }
+
+    /// Whether the boundary folds such that two facets face each other.
+    pub(crate) fn facets_face(&self, turns: &Turns, own: usize, other: usize) -> bool {
+        let run = self.of[own];
+        if self.of[other] != run {
+            return true;
+        }
+        let middle = |facet: usize| {
+            let at = self.place[facet];
+            turns.start[at] + 0.5 * turns.within[at]
+        };
+        let total = turns.total[run];
+        let ahead = middle(other) - middle(own);
+        let on = ahead + if self.place[own] > self.place[other] { total } else { 0.0 };
+        [on, total - on].iter().any(|turn| (turn + PI).abs() < WINDOW)
+    }
+
     /// Whether the body consists of several connected pieces.
     pub(crate) fn has_pieces(&self) -> bool {
         self.pieces.iter().any(|piece| *piece != self.pieces[0])

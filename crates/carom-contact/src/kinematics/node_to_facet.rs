@@ -113,26 +113,25 @@ impl NodeToFacet {
         }
     }
 
-    /// A side against itself: its nodes in the role of the later place, and those in the role of
-    /// the earlier one, whose depth is zero at corners; `piece`: the connected piece of its body to
+    /// A side against itself: its nodes in the role of the later place, and in that of the earlier
+    /// one, where their depth is zero at corners; `piece`: the connected piece of its body to
     /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
     /// over all nodes; `single`: whether a node over a joint has a pair with one facet.
     pub fn of_itself(
         side: &Surface,
-        nodes: Vec<usize>,
-        earlier: NodesWithDepth,
+        [later, earlier]: [NodesWithDepth; 2],
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
         single: bool,
     ) -> Combined {
         let folds = Arc::new(Folds::new(side, piece, first_node, reference));
-        let of = |nodes: Vec<usize>, which: Side| {
-            let nodes = Self::new(nodes, side.clone(), Detection::ClosestPoint);
-            nodes.with_single_facets(single).of_body(side.clone()).folding(folds.clone(), which)
+        let of = |nodes: NodesWithDepth, which: Side| {
+            let against = Self::new(nodes.nodes, side.clone(), Detection::ClosestPoint);
+            let against = against.with_allowed(nodes.depths).with_single_facets(single);
+            against.of_body(side.clone()).folding(folds.clone(), which)
         };
-        let reverse = of(earlier.nodes, Side::Earlier).with_allowed(earlier.depths).reversed();
-        Combined::both(of(nodes, Side::Later), reverse)
+        Combined::both(of(later, Side::Later), of(earlier, Side::Earlier).reversed())
     }
 
     /// Contact with another rule for the contact point; only [`Detection::Trajectory`] finds a
@@ -189,8 +188,8 @@ impl NodeToFacet {
         !is_left(&facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
     }
 
-    /// Contact of nodes of the primary side with the secondary one (`reversed.rs`), once the body of
-    /// the nodes and their depths are known.
+    /// Contact of nodes of the primary side with the secondary one (`reversed.rs`), once the body
+    /// of the nodes and their depths are known.
     #[must_use]
     pub fn reversed(self) -> Self {
         let corners = self

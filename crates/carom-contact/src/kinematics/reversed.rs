@@ -43,6 +43,11 @@ pub struct NodesWithDepth {
 }
 
 impl NodesWithDepth {
+    /// Nodes that may have no depth.
+    pub fn all_held(nodes: Vec<usize>) -> Self {
+        Self { depths: vec![0.0; nodes.len()], nodes }
+    }
+
     /// The nodes that may have no depth.
     #[must_use]
     pub fn without_depth(self) -> Self {

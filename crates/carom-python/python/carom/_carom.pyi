@@ -34,7 +34,7 @@ class Case:
     def run(
         self,
         out: str | PathLike[str] | None,
-        threads: int,
+        threads: int | None,
         page: bool,
         given: Functions,
         report: Report,
@@ -63,7 +63,7 @@ class Record:
 
 class Simulation:
     def __new__(
-        cls, case: Case, threads: int, given: Functions, laws: dict[str, object]
+        cls, case: Case, threads: int | None, given: Functions, laws: dict[str, object]
     ) -> Simulation: ...
     def advance(self) -> tuple[int, int, int, int, float]: ...
     @property
@@ -99,7 +99,7 @@ def explain(kind: str, parameters: list[str]) -> dict[str, Any]: ...
 def schemes() -> Any: ...
 def open(path: str | PathLike[str]) -> Record: ...
 def resume(
-    path: str | PathLike[str], threads: int, page: bool, given: Functions, report: Report
+    path: str | PathLike[str], threads: int | None, page: bool, given: Functions, report: Report
 ) -> tuple[Record, BaseException | None]: ...
 def study(
     text: str,

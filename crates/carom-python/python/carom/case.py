@@ -9,7 +9,7 @@ from typing import Any
 from . import _carom
 from .errors import CaseError
 from .functions import plain
-from .progress import concurrency, progress_bar
+from .progress import progress_bar, thread_count
 from .run import Run, ended
 
 
@@ -196,7 +196,8 @@ class Case:
             Directory of the run, which must not exist yet. Without it the run is recorded in memory,
             and cannot be resumed.
         threads : int, optional
-            Number of threads, by default one per core; the result does not depend on it.
+            Number of threads, by default one per core, and one for a model too small for more to pay;
+            the result does not depend on it.
         progress : bool
             Whether a bar is shown, in a terminal or a notebook, if tqdm is installed.
         page : bool
@@ -222,7 +223,7 @@ class Case:
         """
         with progress_bar(self.title, progress) as report:
             core, raised = self._core.run(
-                out, concurrency("threads", threads), page, self._functions, report
+                out, thread_count(threads), page, self._functions, report
             )
         return ended(Run(core), raised)
 

@@ -24,6 +24,11 @@ def concurrency(name: str, requested: int | None) -> int:
     return requested
 
 
+def thread_count(requested: int | None) -> int | None:
+    """The number of threads asked for by an argument; none for as many as pay, at most one per core."""
+    return None if requested is None else concurrency("threads", requested)
+
+
 def _in_notebook() -> bool:
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython else None

@@ -15,7 +15,7 @@ from . import _carom
 from .errors import StoppedError
 from .fields import Fields
 from .functions import name_of
-from .progress import concurrency, progress_bar
+from .progress import progress_bar, thread_count
 from .table import Table
 
 if TYPE_CHECKING:
@@ -300,7 +300,7 @@ def resume(
     for function in functions:
         given[name_of(function, given)] = function
     with progress_bar(str(directory), progress) as report:
-        core, raised = _carom.resume(directory, concurrency("threads", threads), page, given, report)
+        core, raised = _carom.resume(directory, thread_count(threads), page, given, report)
     return ended(Run(core), raised)
 
 

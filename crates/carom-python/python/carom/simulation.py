@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _carom
 from .case import Case
-from .progress import concurrency
+from .progress import thread_count
 from .table import Table
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,8 @@ class Simulation:
     case : Case
         The case; later changes of it have no effect.
     threads : int, optional
-        Number of threads, by default one per core; the result does not depend on it.
+        Number of threads, by default one per core, and one for a model too small for more to pay;
+        the result does not depend on it.
     laws : mapping of str to object, optional
         Laws of your own by the name of their material. A law has an attribute ``memory``, the count
         of numbers (at most 16) that a quadrature point remembers, all zero at first, and a method
@@ -81,7 +82,7 @@ class Simulation:
         self, case: Case, threads: int | None = None, laws: Mapping[str, object] | None = None
     ) -> None:
         self._core = _carom.Simulation(
-            case._core, concurrency("threads", threads), case._functions, dict(laws or {})
+            case._core, thread_count(threads), case._functions, dict(laws or {})
         )
         self._columns = self._core.columns()
 

@@ -21,6 +21,9 @@ use crate::{History, Run, body_of};
 /// Variables of the motion of a support.
 const VARIABLES: [&str; 4] = ["X", "Y", "Z", "t"];
 
+/// Velocity of approach, over the largest velocity of a party, that is round-off.
+const AT_REST: f64 = 1e-9;
+
 /// A body, or an obstacle that moves; none: an obstacle that is fixed.
 pub(super) type Party<'a> = Option<&'a str>;
 
@@ -64,7 +67,10 @@ impl<'a> Impact<'a> {
         };
         let approach = -along(before)?;
         let separation = episode.end.and_then(along);
-        (approach > 0.0).then_some(Self { striker, others, normal, approach, separation })
+        let parties = others.iter().copied().chain([Some(striker)]);
+        let fastest = parties.filter_map(|party| velocity(run, party, before)).flatten();
+        let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
+        (approach > AT_REST * fastest).then_some(Self { striker, others, normal, approach, separation })
     }
 }
 

@@ -161,20 +161,23 @@ impl Bodies<'_> {
     }
 
     fn itself(&self, k: usize, side: &Side) -> Combined {
+        let spec = &self.case.contacts[k];
         let surface = self.surface(side, &[]);
-        let earlier = self.others(side, &[], side, &surface.corners(self.reference));
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
         let single = self.has_single_facets(k);
-        NodeToFacet::of_itself(
-            &surface,
-            side.nodes.clone(),
-            earlier,
-            &pieces,
-            part.first_node,
-            self.reference,
-            single,
-        )
+        let against = |nodes: [NodesWithDepth; 2]| {
+            NodeToFacet::of_itself(&surface, nodes, &pieces, part.first_node, self.reference, single)
+        };
+        let with_depth = self.others(side, &[], side, &surface.corners(self.reference));
+        let both = against([NodesWithDepth::all_held(side.nodes.clone()), with_depth.clone()]);
+        if spec.method == case::Method::NodeToSegment {
+            return both;
+        }
+        let bounded = bounded(spec, with_depth);
+        let bounds = against([bounded.clone(), bounded]);
+        let mortar = Mortar::of_itself(surface.clone(), &pieces, part.first_node, self.reference, both);
+        Combined::both(integrated(spec, mortar), bounds)
     }
 
     fn itself_in_space(&self, k: usize, side: &Side) -> Combined {

@@ -1,6 +1,6 @@
 //! Quadrature points and gaps of the secondary facets at one configuration.
 
-use super::cut::{Opposed, Region};
+use super::cut::{Opposed, Regions};
 use super::multipliers::MOST;
 use super::opposite::PointGap;
 use super::turned::Turned;
@@ -38,7 +38,7 @@ pub(super) struct Cache {
     /// Positions of the nodes of both sides.
     pub(super) places: Vec<f64>,
     /// Facets of the primary with their regions.
-    pub(super) regions: Vec<(usize, Region)>,
+    pub(super) regions: Regions,
     /// The facets of the secondary side.
     pub(super) of_facets: Vec<Faced>,
 }

@@ -15,6 +15,7 @@
 
 use carom_algebra::Vector;
 
+use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
 use crate::kinematics::surface::Surface;
 use crate::places::Places;
@@ -197,10 +198,19 @@ impl Rule {
     }
 }
 
-/// A primary side in one configuration, with the regions of those of its facets that count.
+/// The facets of a primary side that count, with their regions, in one configuration.
+#[derive(Debug, Default)]
+pub(super) struct Regions {
+    pub(super) of_facets: Vec<(usize, Region)>,
+    /// Turns along the boundary, for contact of a side with itself.
+    pub(super) turns: Turns,
+}
+
+/// A primary side in one configuration.
 pub(super) struct Opposites<'a> {
     pub(super) surface: &'a Surface,
-    pub(super) regions: &'a [(usize, Region)],
+    pub(super) folds: Option<&'a Folds>,
+    pub(super) regions: &'a Regions,
     pub(super) y: Places<'a>,
 }
 
@@ -212,18 +222,27 @@ struct Part<'a> {
 }
 
 impl Opposites<'_> {
-    /// Finds the part of a secondary facet that faces these facets.
-    pub(super) fn facing(&self, own: Facet, rule: &Rule) -> Facing {
+    /// Finds the part of a secondary facet, given with its number, that faces these facets.
+    pub(super) fn facing(&self, number: usize, own: Facet, rule: &Rule) -> Facing {
+        let may_face = |(facet, _): &&(usize, Region)| {
+            self.folds.is_none_or(|folds| meet(folds, &self.regions.turns, [number, *facet]))
+        };
+        let regions = self.regions.of_facets.iter().filter(may_face);
         match rule.quadrature {
-            Quadrature::Segments => self.facing_in_parts(own, &rule.points),
-            Quadrature::Fixed => self.facing_at_points(own, &rule.points),
+            Quadrature::Segments => self.facing_in_parts(own, regions, &rule.points),
+            Quadrature::Fixed => self.facing_at_points(own, regions, &rule.points),
         }
     }
 
-    fn facing_in_parts(&self, own: Facet, rule: &[[f64; 2]]) -> Facing {
+    fn facing_in_parts<'r>(
+        &self,
+        own: Facet,
+        regions: impl Iterator<Item = &'r (usize, Region)>,
+        rule: &[[f64; 2]],
+    ) -> Facing {
         let mut parts = Vec::new();
         let normal = own.at(self.y, 0.0).normal;
-        for (facet, region) in self.regions {
+        for (facet, region) in regions {
             if let Some(ends) = region.part_of(own, normal, self.y) {
                 parts.push(Part { ends, facet: *facet, region });
             }
@@ -280,7 +299,12 @@ impl Opposites<'_> {
         borders
     }
 
-    fn facing_at_points(&self, own: Facet, rule: &[[f64; 2]]) -> Facing {
+    fn facing_at_points<'r>(
+        &self,
+        own: Facet,
+        regions: impl Iterator<Item = &'r (usize, Region)> + Clone,
+        rule: &[[f64; 2]],
+    ) -> Facing {
         let mut found = Facing::default();
         let normal = own.at(self.y, 0.0).normal;
         let mut end = -1.0;
@@ -288,7 +312,7 @@ impl Opposites<'_> {
             let start = end;
             end += weight;
             let point = own.at(self.y, xi).position;
-            let over = self.regions.iter().filter(|(_, region)| region.contains(point, normal));
+            let over = regions.clone().filter(|(_, region)| region.contains(point, normal));
             let over = over.map(|(facet, region)| (*facet, region));
             let Some((facet, region)) = self.nearest(own, over, xi) else { continue };
             let before = found.points.len();
@@ -330,6 +354,11 @@ impl Opposites<'_> {
         let eta = eta.or_else(|| opposite.closest_point(self.y, point, BEYOND))?;
         Some(Opposed { xi, weight, facet, eta })
     }
+}
+
+/// Whether a later and an earlier facet of one boundary may meet.
+pub(super) fn meet(folds: &Folds, turns: &Turns, [own, other]: [usize; 2]) -> bool {
+    folds.admits_facet(own, other) && folds.facets_face(turns, own, other)
 }
 
 /// |η| up to which a closest point is followed past the end of a facet: at a kink of 30°, a point

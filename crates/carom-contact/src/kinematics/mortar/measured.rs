@@ -11,7 +11,7 @@ use carom_algebra::Vector;
 
 use super::border::{self, Border, End};
 use super::cache::{Cache, Faced, Measured};
-use super::cut::{Crossing, Facing, Opposed, Region};
+use super::cut::{Crossing, Facing, Opposed, Regions};
 use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
 use super::sides::Mortar;
@@ -43,7 +43,7 @@ impl Mortar {
     }
 
     /// Measures a facet, and those on which its carriers depend.
-    fn measure_facet(&self, facet: usize, regions: &[(usize, Region)], faced: &mut [Faced], y: Places) {
+    fn measure_facet(&self, facet: usize, regions: &Regions, faced: &mut [Faced], y: Places) {
         if faced[facet].carriers.is_some() {
             return;
         }
@@ -55,7 +55,7 @@ impl Mortar {
                 continue;
             }
             let own = self.secondary.facet(part.facet);
-            let Facing { points, ends, borders } = facing(own);
+            let Facing { points, ends, borders } = facing(part.facet, own);
             of.borders = borders.iter().filter_map(|at| self.border(own, at, y)).collect();
             let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
             of.points = measured.filter(|point| point.area > 0.0).collect();

@@ -3,9 +3,10 @@
 use carom_algebra::Vector;
 
 use super::border::Border;
-use super::cut::{Facing, Opposed, Opposites, Region, Rule};
+use super::cut::{Facing, Opposed, Opposites, Region, Regions, Rule};
 use crate::kinematics::NodeToObstacle;
 use crate::kinematics::facets::Facets;
+use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::gap::Gap;
 use crate::kinematics::obstacle::ObstacleGap;
 use crate::kinematics::projection::Facet;
@@ -31,6 +32,8 @@ pub(super) struct Primary {
     /// Facets of the body that face the secondary side in other contacts. What is nearer to them
     /// belongs to those.
     siblings: Vec<usize>,
+    /// How the boundary folds, where the secondary side is this one.
+    pub(super) folds: Option<Folds>,
 }
 
 /// Gap of a point of the secondary side, with its derivatives by the point and the nodes opposite.
@@ -43,13 +46,13 @@ pub(super) enum PointGap {
 }
 
 impl Primary {
-    pub(super) fn new(surface: Surface) -> Self {
+    pub(super) fn new(surface: Surface, folds: Option<Folds>) -> Self {
         let order = along(&surface);
         let mut place = vec![0; surface.all()];
         order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
         let siblings = (0..surface.all()).filter(|&facet| surface.is_of_sibling(facet));
         let siblings = siblings.filter(|&facet| !surface.is_mirror(facet)).collect();
-        Self { surface, order, place, siblings }
+        Self { surface, order, place, siblings, folds }
     }
 }
 
@@ -122,25 +125,34 @@ impl Opposite {
 
     /// Some facets of the opposite side with their regions at positions `y`, and those of the other
     /// contacts; none of an obstacle.
-    pub(super) fn regions(&self, facets: &[usize], y: Places) -> Vec<(usize, Region)> {
-        let Self::Side(Primary { surface, siblings, .. }) = self else { return Vec::new() };
+    pub(super) fn regions(&self, facets: &[usize], y: Places) -> Regions {
+        let Self::Side(Primary { surface, siblings, folds, .. }) = self else { return Regions::default() };
         let all = facets.iter().chain(siblings);
-        all.map(|&facet| (facet, Region::of(surface, facet, y))).collect()
+        let of_facets = all.map(|&facet| (facet, Region::of(surface, facet, y))).collect();
+        let mut turns = Turns::default();
+        if let Some(folds) = folds {
+            turns.update(folds, surface, y);
+        }
+        Regions { of_facets, turns }
     }
 
-    /// A function that finds the part of a facet of the secondary side that faces facets with these
-    /// regions at positions `y`, with points of quadrature.
+    /// A function that finds the part of a facet of the secondary side, given by its number, that
+    /// faces facets with these regions at positions `y`, with points of quadrature.
     pub(super) fn facing<'a>(
         &'a self,
-        regions: &'a [(usize, Region)],
+        regions: &'a Regions,
         rule: &'a Rule,
         y: Places<'a>,
-    ) -> impl Fn(Facet) -> Facing + 'a {
+    ) -> impl Fn(usize, Facet) -> Facing + 'a {
         let primary = match self {
-            Self::Side(primary) => Some(Opposites { surface: &primary.surface, regions, y }),
+            Self::Side(Primary { surface, folds, .. }) => {
+                Some(Opposites { surface, folds: folds.as_ref(), regions, y })
+            }
             Self::Obstacle(_) => None,
         };
-        move |own| primary.as_ref().map_or_else(|| Facing::whole(rule), |side| side.facing(own, rule))
+        move |number, own| {
+            primary.as_ref().map_or_else(|| Facing::whole(rule), |side| side.facing(number, own, rule))
+        }
     }
 
     /// The gap of a point at a place; none at the centre of a circle, where no direction is

@@ -7,6 +7,7 @@ use super::cut::{Quadrature, Rule};
 use super::multipliers::{MOST, Multiplier, Part, degree_of_pressure, multipliers};
 use super::opposite::{Opposite, Primary};
 use crate::kinematics::facets::Facets;
+use crate::kinematics::folds::Folds;
 use crate::kinematics::surface::Surface;
 use crate::kinematics::{Kinematics, NodeToObstacle};
 use crate::places::Places;
@@ -51,7 +52,22 @@ impl Mortar {
         reference: &[f64],
         sides: impl Kinematics + 'static,
     ) -> Self {
-        Self::between(secondary, Opposite::Side(Primary::new(primary)), reference, Box::new(sides))
+        Self::between(secondary, Opposite::Side(Primary::new(primary, None)), reference, Box::new(sides))
+    }
+
+    /// Contact of a side with itself: of two places that meet the later one along the boundary is
+    /// the secondary; `piece`: the connected piece of its body to which each node belongs, from
+    /// `first_node` on; `reference` and `sides` as in [`new`](Self::new).
+    pub fn of_itself(
+        side: Surface,
+        piece: &[usize],
+        first_node: usize,
+        reference: &[f64],
+        sides: impl Kinematics + 'static,
+    ) -> Self {
+        let folds = Folds::new(&side, piece, first_node, reference);
+        let opposite = Opposite::Side(Primary::new(side.clone(), Some(folds)));
+        Self::between(side, opposite, reference, Box::new(sides))
     }
 
     /// Contact of a secondary side with the obstacle of its nodes; `reference`: reference

@@ -39,7 +39,8 @@ pub(super) struct Sample {
     pub(super) eta: f64,
 }
 
-/// The nodes of a weighted gap: those of the secondary side, then those of the primary.
+/// The nodes of a weighted gap: those of the secondary side, then those of the primary. Near the
+/// tip of a fold a side meets itself at nodes of its own, which occur once.
 pub(super) struct Stencil {
     pub(super) nodes: Vec<usize>,
     /// Number of nodes of the secondary side.
@@ -92,15 +93,12 @@ impl Sample {
 
 impl Stencil {
     fn place(&self, mortar: &Mortar, sample: &Sample) -> Placed {
-        let place = |from: usize, to: usize, node: usize| {
-            from + self.nodes[from..to].iter().position(|&other| other == node).unwrap_or_default()
-        };
+        let place = |node: usize| self.nodes.iter().position(|&other| other == node).unwrap_or_default();
         let mut placed = Placed { own: [0; NODES], others: [0; NODES] };
         let own = mortar.secondary.facet(sample.own).nodes;
         let others = mortar.opposite.nodes(sample.facet);
-        placed.own.iter_mut().zip(own).for_each(|(at, &node)| *at = place(0, self.own, node));
-        let end = self.nodes.len();
-        placed.others.iter_mut().zip(others).for_each(|(at, &node)| *at = place(self.own, end, node));
+        placed.own.iter_mut().zip(own).for_each(|(at, &node)| *at = place(node));
+        placed.others.iter_mut().zip(others).for_each(|(at, &node)| *at = place(node));
         placed
     }
 
@@ -164,7 +162,7 @@ impl Mortar {
         let own = nodes.len();
         for &facet in self.opposite.window(pair) {
             for &node in self.opposite.nodes(facet) {
-                if !nodes[own..].contains(&node) {
+                if !nodes.contains(&node) {
                     nodes.push(node);
                 }
             }
@@ -223,7 +221,7 @@ impl Mortar {
         let mut nearest: Option<f64> = None;
         for part in &self.multipliers[pair.node].parts {
             let own = self.secondary.facet(part.facet);
-            for at in facing(own).points {
+            for at in facing(part.facet, own).points {
                 let Some(gap) = self.opposite.gap(&at, own.at(y, at.xi).position, y) else { continue };
                 let gap = gap.distance();
                 nearest = Some(nearest.map_or(gap, |least| least.min(gap)));

@@ -3,7 +3,7 @@
 
 use carom_solid::{Bounds, Hull};
 
-use super::cut::Region;
+use super::cut::meet;
 use super::opposite::{Opposite, Primary};
 use super::sides::Mortar;
 use crate::kinematics::facets::Facets;
@@ -117,7 +117,7 @@ impl Mortar {
     /// For every facet of the secondary side that comes near the primary on its way, the facets
     /// that it faces at either end.
     fn faced(&self, primary: &Primary, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
-        let Primary { surface, order, .. } = primary;
+        let Primary { surface, order, folds, .. } = primary;
         let hulls = [&self.secondary, surface].map(|side| Hull::line(side.shape().nodes(), 1.0));
         let swept = |side: &Surface, hull: &Hull, facet: usize| {
             let nodes = side.facet(facet).nodes;
@@ -134,14 +134,17 @@ impl Mortar {
         if own.iter().all(|(_, bounds)| !bounds.meets(&all)) {
             return faced;
         }
-        let of = |y: Places| order.iter().map(|&facet| Region::of(surface, facet, y)).collect::<Vec<_>>();
-        let regions = ends.map(of);
+        let regions = ends.map(|y| self.opposite.regions(order, y));
         for (facet, bounds) in own {
             let own = self.secondary.facet(facet);
             let normals = ends.map(|y| own.at(y, 0.0).normal);
             let mut window: Option<Window> = None;
             for place in 0..order.len() {
-                let is_faced = |k: usize| regions[k][place].part_of(own, normals[k], ends[k]).is_some();
+                let is_faced = |k: usize| {
+                    let (other, region) = &regions[k].of_facets[place];
+                    folds.as_ref().is_none_or(|folds| meet(folds, &regions[k].turns, [facet, *other]))
+                        && region.part_of(own, normals[k], ends[k]).is_some()
+                };
                 if is_faced(0) || is_faced(1) {
                     window.get_or_insert(Window { first: place, last: place }).last = place;
                 }

@@ -55,8 +55,8 @@ pub(super) const PAST: f64 = 1e-9;
 /// which a closest point is past it: blocks that are pressed together edge to edge bulge
 /// differently, and where two edges of either meet neither corner faces the other block.
 const PAST_SIDE: f64 = 2e-2;
-/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node of
-/// the other side meet: just where the node begins to face the side.
+/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node
+/// of the other side meet: just where the node begins to face the side.
 pub(super) const NEAR_END: f64 = 0.5 * PAST_SIDE;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
 /// node out that would be handed to and fro between them: two rows would depend on each other.
@@ -164,8 +164,8 @@ impl NodeToPatch {
         }
     }
 
-    /// Contact of nodes of the primary side with the secondary one (`../reversed.rs`), once the body
-    /// of the nodes and their depths are known.
+    /// Contact of nodes of the primary side with the secondary one (`../reversed.rs`), once the
+    /// body of the nodes and their depths are known.
     #[must_use]
     pub fn reversed(self) -> Self {
         let corners = self
