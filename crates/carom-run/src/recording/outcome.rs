@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use carom_case::Problems;
 use carom_mechanics::Stopped;
-use carom_record::RecordError;
+use carom_record::{RecordError, Run};
 
 /// Progress of a simulation after an accepted step, and every second while a step is bisected.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
@@ -66,6 +66,8 @@ pub struct Outcome {
     pub wall: f64,
     /// Remarks, e.g. that a damaged checkpoint was skipped.
     pub remarks: Vec<String>,
+    /// The record, if this process has computed the run to its end.
+    pub record: Option<Run>,
 }
 
 /// Why there is no (complete) run.

@@ -18,7 +18,7 @@ use super::outcome::{End, Outcome, Progress, RunError};
 use super::rows::{Rows, contact_rows};
 use super::stopped::{advice, explain};
 use super::tally::{Busy, Tally, checkpoint};
-use super::verdicts::judged;
+use super::verdicts::judge;
 use crate::warnings::{LARGE_ROTATION, LARGE_STRAIN, warnings_of_record};
 
 /// Time between signs of life while a step is bisected.
@@ -360,7 +360,7 @@ impl<'a> Session<'a> {
         }
         let state = self.simulation.state();
         let wall = self.began.elapsed().as_secs_f64();
-        let outcome = Outcome {
+        let mut outcome = Outcome {
             directory: self.writer.directory().to_path_buf(),
             steps: state.step,
             time: state.time,
@@ -368,14 +368,16 @@ impl<'a> Session<'a> {
             remarks,
             reason: self.manifest.reason.clone(),
             end,
+            record: None,
         };
         self.writer.finish(&mut self.manifest)?;
         if let Some(run) = read.transpose()? {
-            let run = Run { manifest: self.manifest, ..run };
+            let mut run = Run { manifest: self.manifest, ..run };
             metrics::write(&run)?;
-            if let Some(manifest) = judged(run, &self.case.expects) {
-                self.writer.manifest(&manifest)?;
+            if judge(&mut run, &self.case.expects) {
+                self.writer.manifest(&run.manifest)?;
             }
+            outcome.record = Some(run);
         }
         Ok(outcome)
     }

@@ -13,7 +13,7 @@ use super::fields::sides;
 use super::outcome::{End, Outcome, Progress, RunError};
 use super::session::Session;
 use super::tally::{Tally, checkpoint, from_checkpoint};
-use super::verdicts::judged;
+use super::verdicts::judge;
 use crate::setup::Setup;
 use crate::thread_count::ThreadCount;
 use crate::warnings::warnings;
@@ -134,11 +134,11 @@ pub fn resume_with(
     let case = &case;
     if manifest.status == Status::Finished {
         // The process may have been killed between the last row and the verdicts.
-        if manifest.expectations.is_empty()
-            && !case.expects.is_empty()
-            && let Some(manifest) = judged(Run::open(directory)?, &case.expects)
-        {
-            manifest.write(directory)?;
+        if manifest.expectations.is_empty() && !case.expects.is_empty() {
+            let mut run = Run::open(directory)?;
+            if judge(&mut run, &case.expects) {
+                run.manifest.write(directory)?;
+            }
         }
         let steps = case.time.steps();
         return Ok(Outcome {
@@ -149,6 +149,7 @@ pub fn resume_with(
             time: case.time.end,
             wall: 0.0,
             remarks: vec!["the run was already finished; nothing was computed".into()],
+            record: None,
         });
     }
     let reopened = RunWriter::reopen(directory)?;

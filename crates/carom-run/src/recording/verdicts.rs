@@ -1,16 +1,16 @@
 //! Comparison of a record with the expectations of its case.
 
 use carom_case::ExpectSpec;
-use carom_record::{Manifest, Run, Status};
+use carom_record::{Run, Status};
 
-/// The manifest with the verdicts on the record, if there are any. A stopped run is judged only if
-/// one of its expectations concerns stopping.
-pub(super) fn judged(mut run: Run, expects: &[ExpectSpec]) -> Option<Manifest> {
-    let judged =
+/// Adds the verdicts on a record to its manifest; returns whether there are any. A stopped run is
+/// judged only if one of its expectations concerns stopping.
+pub(super) fn judge(run: &mut Run, expects: &[ExpectSpec]) -> bool {
+    let is_judged =
         run.manifest.status == Status::Finished || expects.iter().any(ExpectSpec::asks_whether_stopped);
-    if expects.is_empty() || !judged {
-        return None;
+    if expects.is_empty() || !is_judged {
+        return false;
     }
-    run.manifest.expectations = carom_record::judge(&run, expects);
-    Some(run.manifest)
+    run.manifest.expectations = carom_record::judge(run, expects);
+    true
 }

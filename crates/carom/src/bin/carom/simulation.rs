@@ -107,7 +107,10 @@ pub(crate) fn conclude(
             directory: done.directory,
         });
     }
-    let run = Run::open(&done.directory)?;
+    let run = match done.record {
+        Some(run) => run,
+        None => Run::open(&done.directory)?,
+    };
     let interrupted = done.end == End::Interrupted;
     Ok(Outcome {
         interrupted,
