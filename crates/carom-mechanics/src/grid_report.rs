@@ -106,7 +106,7 @@ pub struct GridReport {
     pub releases: u32,
     /// Largest penetration at the ends of its steps.
     pub penetration: Depths,
-    /// Contacts of which a node was then deeper than a tenth of the facet that it entered.
+    /// Contacts of which a node was then too deep to be trusted.
     pub doubtful: BTreeSet<usize>,
     /// Events in order.
     pub events: Vec<LogEvent>,

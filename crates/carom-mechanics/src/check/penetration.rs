@@ -37,14 +37,21 @@ pub struct Penetration {
     lengths: Vec<HashMap<usize, f64>>,
 }
 
-/// Depth over the length of a facet from which a contact is doubtful, whatever its law allows.
-const DOUBTFUL: f64 = 0.1;
+/// Depth over the length of a facet above which contact of two sides is doubtful, whatever its law
+/// allows.
+const DEEP: f64 = 0.2;
+/// The same of a side in itself: no stiffness that was chosen for it explains the depth.
+const DEEP_IN_ITSELF: f64 = 0.1;
+
+fn is_doubtful(contact: &Contact, depth: f64, length: f64) -> bool {
+    depth > if contact.itself { DEEP_IN_ITSELF } else { DEEP } * length
+}
 
 /// Penetration at a state.
 #[derive(Debug, Default)]
 pub(crate) struct Measured {
     pub depths: Depths,
-    /// Contacts with a node deeper than a tenth of a facet, ascending.
+    /// Doubtful contacts, ascending.
     pub doubtful: Vec<usize>,
     /// The first node found beyond its limit, with contact and body.
     beyond: Option<(usize, usize, Inside)>,
@@ -52,10 +59,10 @@ pub(crate) struct Measured {
 
 impl Measured {
     /// Adds the depth of a node in a facet, or of a facet at a node, of this length.
-    fn add(&mut self, contact: usize, constrained: bool, depth: f64, length: f64) {
+    fn add(&mut self, (k, contact): (usize, &Contact), constrained: bool, depth: f64, length: f64) {
         self.depths.add(depth, constrained);
-        if depth > DOUBTFUL * length && self.doubtful.last() != Some(&contact) {
-            self.doubtful.push(contact);
+        if is_doubtful(contact, depth, length) && self.doubtful.last() != Some(&k) {
+            self.doubtful.push(k);
         }
     }
 }
@@ -64,7 +71,7 @@ impl Measured {
 #[derive(Debug, Default)]
 pub(crate) struct Deepest {
     depths: Depths,
-    /// Whether a node is deeper than a tenth of the facet that it entered.
+    /// Whether a node is so deep that the contact is doubtful.
     is_doubtful: bool,
     /// The node that is furthest beyond its limit.
     pub beyond: Option<Inside>,
@@ -220,7 +227,7 @@ impl Penetration {
         }
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
             if let Some((body, inside, length)) = self.folded(model, contact, &state.y) {
-                measured.add(k, false, inside.depth, length);
+                measured.add((k, contact), false, inside.depth, length);
                 let is_beyond = inside.depth > inside.limit;
                 measured.beyond = measured.beyond.or(is_beyond.then_some((k, body, inside)));
             }
@@ -229,7 +236,8 @@ impl Penetration {
             let Pierced { node, place, depth, counts, limit, length, .. } = pierced;
             if depth > counts || state.closed(contact, place).is_some() {
                 let length = if counts > 0.0 { f64::INFINITY } else { length };
-                measured.add(contact, pierced.is_held && counts == 0.0, depth, length);
+                let of = (contact, &model.contacts[contact]);
+                measured.add(of, pierced.is_held && counts == 0.0, depth, length);
             }
             let inside = Inside { node, what: What::Obstacle, depth, limit };
             measured.beyond = measured.beyond.or((depth > limit).then_some((contact, part, inside)));
@@ -242,10 +250,10 @@ impl Penetration {
                 contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes())
             {
                 let gap = contact.kinematics.signed_distance(place, &state.y);
-                measured.add(k, true, -gap.unwrap_or(0.0), length(node));
+                measured.add((k, contact), true, -gap.unwrap_or(0.0), length(node));
             }
             below_obstacle(contact, &state.y)
-                .for_each(|(node, depth)| measured.add(k, false, depth, length(node)));
+                .for_each(|(node, depth)| measured.add((k, contact), false, depth, length(node)));
         }
         measured.doubtful.sort_unstable();
         measured.doubtful.dedup();
@@ -403,7 +411,8 @@ impl Penetration {
                 *first = k;
             }
             found.depths.add(depth, watched.constrained);
-            found.is_doubtful |= depth > DOUBTFUL * entered.length;
+            found.is_doubtful |=
+                contact.is_some_and(|k| is_doubtful(&model.contacts[k], depth, entered.length));
             let mut limit = watched.limit(entered.length);
             if watched.constrained
                 && entered.is_at_kink

@@ -55,7 +55,7 @@ pub struct StepReport {
     pub restitution: f64,
     /// Penetration at the end.
     pub penetration: Depths,
-    /// Contacts of which a node is then deeper than a tenth of the facet that it entered.
+    /// Contacts of which a node is then too deep to be trusted.
     pub doubtful: Vec<usize>,
 }
 

@@ -118,8 +118,7 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
         }
         LogEvent::Overlap { time, overlap: Undeclared::Sides { contact } } => {
             let name = contact_name(*contact);
-            let message =
-                format!("contact \"{name}\": a node is deeper than a tenth of the facet that it entered");
+            let message = format!("contact \"{name}\": a node lies deep in the other side");
             Event::new(step, *time, "deep", message).with("contact", name)
         }
         LogEvent::Ambiguous { time, regularity } => {

@@ -98,7 +98,7 @@ pub(super) fn recorded(text: &str, sets: &[&str]) -> Vec<String> {
 /// Springs under a block, whose facets are 0.25 long, let it sink by as much as they are soft: into
 /// another block, and into a rigid floor.
 #[test]
-fn sides_deeper_than_a_tenth_of_a_facet() {
+fn sides_deeper_than_a_fifth_of_a_facet() {
     const BLOCKS: &str = include_str!("../../../../cases/static/blocks.toml");
     const FLOOR: &str = "contact.joint.primary={ plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
     const PRESSED: [&str; 3] = [
@@ -117,7 +117,7 @@ fn sides_deeper_than_a_tenth_of_a_facet() {
                 deepest = deepest.max(simulation.step().unwrap().penetration.all);
             }
             let is_warned = recorded(BLOCKS, &sets).iter().any(|id| id == "deep-penetration");
-            assert_eq!(is_warned, deepest > 0.025, "{sets:?}: {deepest}");
+            assert_eq!(is_warned, deepest > 0.05, "{sets:?}: {deepest}");
             given.push(is_warned);
         }
     }
