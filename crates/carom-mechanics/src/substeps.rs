@@ -13,6 +13,8 @@ use crate::stepper::Accepted;
 pub(crate) const MOST: u32 = 12;
 /// Share of the energy that the guard still allows that one step may create.
 const STEP: f64 = 0.1;
+/// Created energy over the energy scale that is round-off.
+const ROUND_OFF: f64 = 1e-12;
 /// Created energy of a shorter step relative to that of the longer one, above which it makes it
 /// worse.
 const WORSE: f64 = 4.0;
@@ -137,7 +139,7 @@ fn beyond(step: &Accepted, from: &State, share: f64, floor: f64) -> Option<(f64,
     let so_far = before.surely_created().max(0.0);
     let created = now.surely_created() - so_far;
     let allowed = STEP * (share * now.scale() + floor - so_far).max(0.0);
-    (created > allowed).then_some((created, allowed))
+    (created > allowed.max(ROUND_OFF * now.scale())).then_some((created, allowed))
 }
 
 #[cfg(test)]

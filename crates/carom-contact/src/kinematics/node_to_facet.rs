@@ -1,7 +1,7 @@
 //! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point
 //! at the end of a bar.
 //!
-//! The gap and its derivatives are in `gap.rs`. ξ is that of the closest point, solved for in every
+//! Rows are in `facet_rows.rs`, the gap and its derivatives in `gap.rs`. ξ is that of the closest point, solved for in every
 //! call up to |ξ| = 1.2 beyond an end. With [`ContactPoint::Frozen`] it is that of the crossing of
 //! the paths in the first step of a pair, and of the closest point at the start of the step in the
 //! later ones; a step leaves it unchanged.
@@ -15,26 +15,23 @@ use std::sync::{Arc, Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::facets::{Facets, OnFacet};
-use super::facing::{NEAR_END, PAST, REACH, Reached};
+use super::facing::{NEAR_END, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
-use super::gap::Gap;
 use super::hand_over::{Held, Next, Sliding};
-use super::joint::{AT_JOINT, OnFacets};
+use super::joint::OnFacets;
 use super::opposed::is_left;
 use super::passed::{Passed, Paths};
-use super::reversed::{Corners, Faced, NodesWithDepth};
+use super::reversed::{Corners, Faced};
 use super::rounding::rounding;
 use super::surface::{Search, Surface, path};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
-use super::{Combined, Kinematics, watch_every_node, zero};
+use super::{Kinematics, watch_every_node, zero};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
-/// |ξ| up to which the closest point of a pair is followed before Newton's method has converged.
-const WANDER: f64 = 3.0;
 /// |ξ| beyond which a pair is handed over to the next facet before Newton's method has converged.
 const HAND_OVER: f64 = 1.02;
 /// |ξ| beyond which a pair is handed back to the facet that it came from before Newton's method has
@@ -65,7 +62,7 @@ pub struct NodeToFacet {
     pub(super) secondary: Vec<usize>,
     pub(super) primary: Surface,
     pub(super) detection: Detection,
-    point: ContactPoint,
+    pub(super) point: ContactPoint,
     /// Depth that each node may have without contact; empty if none may have any.
     allowed: Vec<f64>,
     /// Initial depth that is kept for each node; empty if all are zero.
@@ -78,7 +75,7 @@ pub struct NodeToFacet {
     /// The boundary of the body to which the secondary nodes belong, and the facets at each of its
     /// nodes.
     pub(super) own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
-    single: bool,
+    pub(super) single: bool,
     /// For nodes of the primary side against the secondary one: their corners.
     reversed: Option<Corners>,
     tools: Mutex<Tools>,
@@ -111,27 +108,6 @@ impl NodeToFacet {
             reversed: None,
             tools: Mutex::new(tools),
         }
-    }
-
-    /// A side against itself: its nodes in the role of the later place, and in that of the earlier
-    /// one, where their depth is zero at corners; `piece`: the connected piece of its body to
-    /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
-    /// over all nodes; `single`: whether a node over a joint has a pair with one facet.
-    pub fn of_itself(
-        side: &Surface,
-        [later, earlier]: [NodesWithDepth; 2],
-        piece: &[usize],
-        first_node: usize,
-        reference: &[f64],
-        single: bool,
-    ) -> Combined {
-        let folds = Arc::new(Folds::new(side, piece, first_node, reference));
-        let of = |nodes: NodesWithDepth, which: Side| {
-            let against = Self::new(nodes.nodes, side.clone(), Detection::ClosestPoint);
-            let against = against.with_allowed(nodes.depths).with_single_facets(single);
-            against.of_body(side.clone()).folding(folds.clone(), which)
-        };
-        Combined::both(of(later, Side::Later), of(earlier, Side::Earlier).reversed())
     }
 
     /// Contact with another rule for the contact point; only [`Detection::Trajectory`] finds a
@@ -208,24 +184,6 @@ impl NodeToFacet {
         corners.is_left_to_node(corner, [own, &self.primary], y)
     }
 
-    /// Contact of nodes of the primary side with that side itself.
-    pub(super) fn folding(self, folds: Arc<Folds>, side: Side) -> Self {
-        Self { folds: Some((folds, side)), ..self }
-    }
-
-    /// Whether a node must not form a pair with a facet: one that contains the node, or one that
-    /// the other direction of contact compares it with.
-    fn excludes(&self, node: usize, facet: usize) -> bool {
-        self.folds.as_ref().is_some_and(|(folds, side)| !folds.admits(*side, node, facet))
-    }
-
-    /// Whether ξ lies past an end of a facet at which a facet follows that the node must not form a
-    /// pair with.
-    pub(super) fn ends_at(&self, node: usize, facet: usize, xi: f64) -> bool {
-        let next = || self.primary.neighbour(facet, xi > 0.0);
-        self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
-    }
-
     /// Depth at which the gap of a node is zero: its allowed and its kept depth, less the radius of
     /// its circle.
     pub(super) fn slack(&self, place: usize) -> f64 {
@@ -243,7 +201,7 @@ impl NodeToFacet {
             .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    fn is_frozen(&self) -> bool {
+    pub(super) fn is_frozen(&self) -> bool {
         self.point == ContactPoint::Frozen
     }
 
@@ -253,24 +211,6 @@ impl NodeToFacet {
 
     pub(super) fn gap(&self, node: usize, facet: usize, xi: f64, y: Places) -> f64 {
         self.primary.gap(facet, xi, y.at(node), y)
-    }
-
-    /// Coordinate ξ of the point of a pair's facet that is closest to its node, searched from the
-    /// last one.
-    fn closest(&self, pair: &Pair, y: Places) -> Option<f64> {
-        let facet = self.primary.facet(pair.facet);
-        let from = y.at(self.secondary[pair.node]);
-        facet.closest_from(y, from, pair.xi, WANDER).or_else(|| facet.closest_point(y, from, REACH))
-    }
-
-    /// Gap of a pair at its contact point.
-    pub(super) fn gap_of(&self, pair: &Pair, y: Places) -> Gap {
-        let facet = self.primary.facet(pair.facet);
-        let from = y.at(self.secondary[pair.node]);
-        match self.point {
-            ContactPoint::Closest => Gap::closest(facet, y, from, pair.xi),
-            ContactPoint::Frozen => Gap::fixed(facet, y, from, pair.xi),
-        }
     }
 
     /// Hands over, adds or drops pairs past the ends of their facets. Returns whether anything but
@@ -537,109 +477,5 @@ impl Kinematics for NodeToFacet {
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
         self.slip_derivative_of_mean(pair, y, tangent, matrix);
-    }
-}
-
-impl OnFacets for NodeToFacet {
-    fn dimension(&self) -> usize {
-        self.primary.shape().dimension()
-    }
-
-    fn parts<'a>(&'a self, pair: &'a Pair, y: &'a [f64]) -> impl Iterator<Item = Pair> + 'a {
-        let y = self.places(y);
-        let at = move |facet: usize, xi: f64| {
-            let part = Pair { facet, xi, joint: None, ..*pair };
-            Pair { xi: self.closest(&part, y).unwrap_or(xi), ..part }
-        };
-        let own = at(pair.facet, pair.xi);
-        let forward = pair.joint == Some(1);
-        let next = pair.joint.and_then(|_| self.primary.neighbour_of_side(pair.facet, forward));
-        let beside = next.map(|facet| at(facet, if forward { -1.0 } else { 1.0 }));
-        std::iter::once(own).chain(beside)
-    }
-
-    fn size(&self, facet: usize, y: &[f64]) -> f64 {
-        self.primary.length(facet, self.places(y))
-    }
-
-    fn past_joint(&self, pair: &Pair, joint: u8, y: &[f64]) -> f64 {
-        let y = self.places(y);
-        let forward = joint == 1;
-        let Some(next) = self.primary.neighbour(pair.facet, forward) else { return f64::INFINITY };
-        let [first, second] = if forward { [pair.facet, next] } else { [next, pair.facet] };
-        let before = self.primary.facet(first).at(y, 1.0);
-        let after = self.primary.facet(second).at(y, -1.0);
-        let along = before.tangent * before.measure.recip() + after.tangent * after.measure.recip();
-        let past = (y.at(self.secondary[pair.node]) - after.position).dot(&along) / along.norm();
-        past.abs() / self.primary.length(pair.facet, y)
-    }
-
-    fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        if self.single || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
-            return None;
-        }
-        let forward = pair.xi > 0.0;
-        let joint = u8::from(forward);
-        // A node may meet only one facet of a joint of its own side.
-        let next = self.primary.neighbour(pair.facet, forward)?;
-        if self.excludes(self.secondary[pair.node], next) {
-            return None;
-        }
-        let is_over = self.past_joint(pair, joint, y) <= AT_JOINT;
-        (is_over && self.is_blunt(pair.facet, joint, y)).then_some(joint)
-    }
-
-    fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
-        let forward = joint == 1;
-        self.primary.neighbour_of_side(facet, forward).is_some_and(|next| {
-            let [first, second] = if forward { [facet, next] } else { [next, facet] };
-            self.primary.is_blunt(first, second, self.places(y))
-        })
-    }
-
-    fn nodes_with(&self, pair: &Pair) -> Vec<usize> {
-        [&[self.secondary[pair.node]], self.primary.facet(pair.facet).nodes].concat()
-    }
-
-    fn measure_one(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let node = self.secondary[pair.node];
-        let y = self.places(y);
-        let facet = self.primary.facet(pair.facet);
-        if !self.is_frozen() {
-            let lost = ContactError::Lost { node, facet: pair.facet, xi: pair.xi };
-            pair.xi = self.closest(pair, y).ok_or(lost)?;
-            if !pair.active && self.primary.faces_nothing(pair.facet, pair.xi, y) {
-                rows.push_open();
-                return Ok(());
-            }
-        }
-        let gap = self.gap_of(pair, y);
-        ContactError::unless_regular(node, pair, gap.a)?;
-        let slopes = gap.gradient(facet.nodes.len());
-        rows.push_both(gap.distance + self.slack(pair.node), [&[node], facet.nodes], slopes);
-        Ok(())
-    }
-
-    fn curvature_of_one(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let facet = self.primary.facet(pair.facet);
-        self.gap_of(pair, self.places(y)).curvature_into(
-            facet.nodes.len(),
-            facet.shape.dimension(),
-            curvature,
-        );
-    }
-
-    fn slip_of_one(&self, pair: &Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let node = self.secondary[pair.node];
-        let facet = self.primary.facet(pair.facet);
-        let gap = self.gap_of(pair, self.places(y));
-        ContactError::unless_regular(node, pair, gap.a)?;
-        rows.push_both(0.0, [&[node], facet.nodes], gap.slip(facet.nodes.len()));
-        Ok(())
-    }
-
-    fn slip_derivative_of_one(&self, pair: &Pair, y: &[f64], _: usize, matrix: &mut [f64]) {
-        let facet = self.primary.facet(pair.facet);
-        self.gap_of(pair, self.places(y)).slip_derivative_into(facet.nodes.len(), matrix);
     }
 }

@@ -55,6 +55,13 @@ impl NodesWithDepth {
         let (nodes, depths) = all.filter(|(_, depth)| *depth == 0.0).unzip();
         Self { nodes, depths }
     }
+
+    /// The same nodes, of which those that may have no depth may have this one.
+    #[must_use]
+    pub fn with_at_least(mut self, least: f64) -> Self {
+        self.depths.iter_mut().for_each(|depth| *depth = depth.max(least));
+        self
+    }
 }
 
 /// A pair of a node of the primary side with a facet of the secondary one.

@@ -259,11 +259,14 @@ impl Bodies<'_> {
 
 /// The nodes with a bound on their depth beside gaps that are zero on average, which keep out no
 /// single node: beside a kink of the other side one would enter far. Springs let in every node;
-/// with them only corners are kept out.
+/// with them only corners are kept out. Forces that are no multipliers would be shared between a
+/// corner and the coefficients around it: it is held where it is as deep as other nodes may be.
 fn bounded(spec: &ContactSpec, nodes: NodesWithDepth) -> NodesWithDepth {
+    let depth = nodes.depths.iter().copied().fold(0.0, f64::max);
     match spec.enforcement {
-        case::Enforcement::Penalty => nodes.without_depth(),
-        case::Enforcement::Multiplier | case::Enforcement::Augmented => nodes,
+        case::Enforcement::Multiplier => nodes,
+        case::Enforcement::Augmented => nodes.with_at_least(depth),
+        case::Enforcement::Penalty => nodes.without_depth().with_at_least(depth),
     }
 }
 

@@ -94,8 +94,11 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
     let mut friction = friction(case, spec, rubbing, reference, &facets)?;
     if let Some(friction) = &mut friction {
         if let Some(shear) = spec.friction.shear {
+            // Coefficients of a pressure have the whole area, which leaves none for single nodes.
+            let has_field = kinematics.is_of_field(0);
             for (node, limit) in friction.limits.iter_mut().enumerate() {
-                *limit = kinematics.area(node).map_or(*limit, |area| shear * case.thickness * area);
+                let of_node = if has_field { 0.0 } else { *limit };
+                *limit = kinematics.area(node).map_or(of_node, |area| shear * case.thickness * area);
             }
         }
         friction.edges = kinematics.secondary().len() - rubbing.len();

@@ -18,6 +18,7 @@ mod itself;
 mod node_to_patch;
 mod passed;
 mod patch;
+mod patch_rows;
 mod paths;
 
 pub use boundary::Boundary;
