@@ -26,6 +26,11 @@ impl Number {
     }
 }
 
+/// A time, with a prefix where an instant of this size has one.
+fn duration(x: f64, unit: &str) -> String {
+    if x < 1e-3 { amount(x, unit) } else { format!("{} {unit}", significant(x, 3)).trim_end().to_owned() }
+}
+
 /// Results of a run from which its headline numbers are chosen.
 struct Facts<'a> {
     run: &'a Recorded,
@@ -43,9 +48,11 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let inside =
         || [facts.peak_force(), facts.work(), facts.friction(), facts.plastic(), facts.largest_stress()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
+    let is_impact = !run.is_static() && run.has_contact() && !run.is_driven();
+    let no_rebound = if is_impact { metrics::no_rebound(run) } else { None };
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
-    } else if run.has_contact() && !run.is_driven() {
+    } else if is_impact {
         impact()
             .into_iter()
             .chain([facts.largest_stress(), facts.friction(), facts.plastic(), facts.displacement()])
@@ -75,6 +82,7 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
                     }
                 }
             }
+            @if let Some(why) = no_rebound { p.small { "No coefficient of restitution: " (why) "." } }
         }
     }
 }
@@ -129,9 +137,7 @@ impl Facts<'_> {
         let note = self
             .metric("contact_start")
             .map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
-        // In the unit of the instants.
-        let duration = format!("{} {}", significant(value, 3), self.run.time_unit());
-        Some(Number::new("Contact duration", duration.trim_end().to_owned(), note))
+        Some(Number::new("Contact duration", duration(value, self.run.time_unit()), note))
     }
 
     fn energy_lost(&self) -> Option<Number> {
@@ -172,7 +178,11 @@ impl Facts<'_> {
     }
 
     fn largest_stress(&self) -> Option<Number> {
-        self.of_fields("Largest von Mises stress", self.scene?.stress.as_ref())
+        let mut number = self.of_fields("Largest von Mises stress", self.scene?.stress.as_ref())?;
+        if self.run.case.yielding().next().is_some() {
+            number.note.push_str(", of the quadrature points");
+        }
+        Some(number)
     }
 
     fn displacement(&self) -> Option<Number> {

@@ -5,6 +5,7 @@ use carom_record::{Cell, FieldEntry, FieldSet, Stop, metrics};
 use crate::bodies::{self, Instant};
 use crate::figure::Figure;
 use crate::labels::instant_label;
+use crate::noise::floor;
 use crate::obstacles;
 use crate::recorded::Recorded;
 use crate::sheet::Legend;
@@ -76,11 +77,13 @@ pub(crate) fn instants(run: &Recorded, notes: &mut Vec<String>) -> Option<Figure
         bars::figure(run, &sets, (during, files))
     } else if bodies::fill_space(first) {
         let pictures = space::instants(run, &sets)?;
-        let caption = format!("Deformed bodies with von Mises stress {during}. Data: {files}.");
+        let caption =
+            format!("Deformed bodies with von Mises stress {during}.{} Data: {files}.", run.projected());
         Figure::new("bodies", caption, pictures)
     } else {
         let caption = format!(
-            "Deformed bodies with vertical stress {during}; blue: compression, red: tension. Data: {files}."
+            "Deformed bodies with vertical stress {during}; blue: compression, red: tension.{} Data: {files}.",
+            run.projected()
         );
         Figure::new("bodies", caption, in_plane(run, &sets)?)
     };
@@ -95,7 +98,7 @@ fn in_plane(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
     let length = first.unit("displacement");
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
-    let (bands, cut) = bodies::colors(&list);
+    let (bands, cut) = bodies::colors(&list, floor(run, first, "stress"));
     let frame = bodies::frame(&list);
     let obstacles = obstacles::all(run, frame);
     let times = sets.iter().map(|(time, _)| *time);

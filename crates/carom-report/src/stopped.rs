@@ -71,7 +71,7 @@ fn causes(run: &Recorded, stop: &Stop) -> Markup {
                 @for warning in warnings {
                     li {
                         b { (typeset(&warning.place)) } ": " (Label(&powers(&typeset(&warning.what)))) ". Try "
-                        (Label(&typeset(&warning.advice))) "."
+                        (Prose(&typeset(&warning.advice))) "."
                     }
                 }
             }

@@ -158,6 +158,12 @@ pub const WARNINGS: [Entry; 25] = [
         rule: Rule::Record(record::one_node),
     },
     Entry {
+        id: "open-contact",
+        why: "the bodies did not meet on its sides before the end, or not where these are",
+        advice: "a later end, or sides that meet; none if the contact is a precaution",
+        rule: Rule::Record(record::open_contact),
+    },
+    Entry {
         id: "undeclared-contact",
         why: "nothing keeps them apart: contact acts only between the sides that a [[contact]] names",
         advice: "a [[contact]] that names the sides that meet, or one with between = \"all\"; or ending the run before they meet",

@@ -52,6 +52,27 @@ pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     found
 }
 
+/// Contacts in which no node was ever active: of those of one table of the case, none.
+pub(super) fn open_contact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let has_closed = run.column("activations").is_some_and(|column| column.iter().any(|count| *count > 0.0));
+    // Between rows another contact may have closed.
+    if has_closed && case.output.history_every > 1 {
+        return Vec::new();
+    }
+    let closed: BTreeSet<&str> = run.contact.iter().map(|row| row.contact.as_ref()).collect();
+    let mut tables: BTreeMap<usize, Vec<&ContactSpec>> = BTreeMap::new();
+    case.contacts.iter().for_each(|contact| tables.entry(contact.entry).or_default().push(contact));
+    let open = tables.into_values().filter(|all| all.iter().all(|c| !closed.contains(c.name.as_str())));
+    let found = |all: Vec<&ContactSpec>| {
+        let others = match all.len() {
+            1 => "",
+            _ => ", nor in the others of its table",
+        };
+        Found::of_contact(&all[0].name, format!("no node was in contact at any time{others}"))
+    };
+    open.map(found).collect()
+}
+
 /// Bodies between whose nodes an edge or a narrow sphere of a rigid obstacle lay.
 pub(super) fn edge_between_nodes(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let entered = events(run, "between-nodes").filter_map(|event| {

@@ -147,6 +147,15 @@ fn a_secondary_side_coarser_than_the_primary() {
     assert_eq!(id, "coarse-secondary");
     assert!(what.contains("contact \"strike\"") && what.contains("those of the primary 0.0104"), "{what}");
     assert!(!ids(IMPACT, &[]).contains(&id));
+    // Of a contact of `between` nobody chooses the sides: the softer body, here the first one, is secondary.
+    let all = DISCS.replace("secondary = \"left.arc\"\nprimary = \"right.arc\"", "between = \"all\"");
+    let model = Setup::new(&case(&all, &["body.right.mesh.size=0.1"])).build().unwrap();
+    let given = warnings(&case(&all, &["body.right.mesh.size=0.1"]), &model);
+    let advice = &given.iter().find(|warning| warning.id == "coarse-secondary").unwrap().advice;
+    assert!(
+        advice.contains("a finer mesh of left") && advice.contains("secondary = \"right.SIDE\""),
+        "{advice}"
+    );
     // Quadratic facets of the same length have nodes further apart.
     assert!(ids(IMPACT, &["body.cylinder.element=T3"]).contains(&id));
 }
@@ -327,6 +336,16 @@ fn one_node_that_carries_a_contact() {
     ];
     assert!(recorded(DISCS, &coarse).contains(&id));
     assert!(!recorded(DISCS, &["time.end=0.2"]).contains(&id));
+}
+
+/// Discs that end before they meet, and contacts of one table of which one closes.
+#[test]
+fn contacts_that_never_close() {
+    let id = "open-contact".to_owned();
+    assert!(recorded(DISCS, &["time.end=0.002"]).contains(&id));
+    assert!(!recorded(DISCS, &["time.end=0.2"]).contains(&id));
+    let all = DISCS.replace("secondary = \"left.arc\"\nprimary = \"right.arc\"", "between = \"all\"");
+    assert!(!recorded(&all, &["time.end=0.2"]).contains(&id));
 }
 
 /// Against the strain of the run: with u = 0.012 at E = 1000 the bar has its free length.

@@ -61,6 +61,13 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool) -> Result<(
 
 fn text(study: &Study) -> String {
     let mut lines = metrics(study);
+    lines.extend(study.manifest.off_budget().map(|arm| {
+        let share = arm
+            .role
+            .cost
+            .map_or_else(|| "an unknown part of".to_owned(), |share| format!("{share:.2} times"));
+        format!("not at equal cost: {} took {share} its budget", arm.name)
+    }));
     lines.extend(study.verdicts.iter().map(claim));
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
     for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
@@ -80,15 +87,17 @@ fn metrics(study: &Study) -> Vec<String> {
     let has = |name: &str| study.rows.iter().any(|row| row.value(name).is_some());
     let impulse = if has("impulse_y") || !has("impulse_x") { "impulse_y" } else { "impulse_x" };
     let columns = SHOWN.map(|name| if name == "impulse_y" { impulse } else { name });
+    let columns: Vec<&str> = columns.into_iter().filter(|name| has(name)).collect();
     let head = |name: &str| match study.rows.iter().find_map(|row| unit(row, name)) {
         Some(unit) => format!("{name} [{unit}]"),
         None => name.to_owned(),
     };
-    let mut rows = vec![std::iter::once(String::new()).chain(columns.map(head)).collect::<Vec<_>>()];
+    let mut rows =
+        vec![std::iter::once(String::new()).chain(columns.iter().map(|name| head(name))).collect::<Vec<_>>()];
     for (arm, row) in study.rows.iter().enumerate() {
         let reason = || row.reason.as_deref().unwrap_or("?");
         let cells = match row.status {
-            Some(Status::Finished) => columns.map(|name| short_or_dash(row.value(name))).to_vec(),
+            Some(Status::Finished) => columns.iter().map(|name| short_or_dash(row.value(name))).collect(),
             Some(Status::Failed) => {
                 let alike =
                     study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
@@ -100,7 +109,7 @@ fn metrics(study: &Study) -> Vec<String> {
         };
         rows.push(std::iter::once(row.name.clone()).chain(cells).collect());
     }
-    table::lines(&rows, &[1, 2, 3, 4, 5, 6])
+    table::lines(&rows, &(1..=columns.len()).collect::<Vec<_>>())
 }
 
 fn claim(v: &Verdict) -> String {
