@@ -1,6 +1,6 @@
 //! The five numbers of a run that a reader wants first.
 
-use carom_record::metrics;
+use carom_record::{Sizes, metrics};
 use maud::{Markup, html};
 
 use crate::asked::metrics_of;
@@ -36,12 +36,13 @@ struct Facts<'a> {
     run: &'a Recorded,
     scene: Option<&'a Scene>,
     metrics: Vec<metrics::Metric>,
+    sizes: Sizes,
 }
 
 /// The numbers fit for the run: of an impact, of bodies that are driven, of a static analysis, or
 /// of a free motion.
 pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
-    let facts = Facts { run, scene, metrics: metrics_of(run) };
+    let facts = Facts { run, scene, metrics: metrics_of(run), sizes: Sizes::of(run) };
     let impact =
         || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
@@ -165,6 +166,8 @@ impl Facts<'_> {
                 found.push((size(row), row, name));
             }
         }
+        let unit = history.unit("contact_force_x");
+        found.retain(|(size, ..)| !self.sizes.is_round_off(*size, unit));
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let number = |(value, row, name): (f64, usize, &str)| {
             Some(Number::new(format!("Largest reaction, {name}"), self.force(value), self.at(row)))
@@ -173,7 +176,8 @@ impl Facts<'_> {
     }
 
     fn of_fields(&self, name: &str, peak: Option<&Peak>) -> Option<Number> {
-        let Peak { value, time, unit } = peak?;
+        let Peak { value, time, unit } =
+            peak.filter(|peak| !self.sizes.is_round_off(peak.value, &peak.unit))?;
         Some(Number::new(name, amount(*value, unit), format!("at {}", instant_label(self.run, *time))))
     }
 
@@ -199,7 +203,8 @@ impl Facts<'_> {
 
     fn friction(&self) -> Option<Number> {
         let work = *self.run.column("friction_work")?.last()?;
-        (work != 0.0).then(|| Number::new("Work of friction", self.energy(work), "at the end"))
+        let is_zero = work == 0.0 || self.sizes.is_round_off(work, self.run.history.unit("total"));
+        (!is_zero).then(|| Number::new("Work of friction", self.energy(work), "at the end"))
     }
 
     fn plastic(&self) -> Option<Number> {

@@ -160,7 +160,7 @@ pub const WARNINGS: [Entry; 25] = [
     Entry {
         id: "open-contact",
         why: "the bodies did not meet on its sides before the end, or not where these are",
-        advice: "a later end, or sides that meet; none if the contact is a precaution",
+        advice: "a later end, or sides that meet; nothing where the contact is a precaution",
         rule: Rule::Record(record::open_contact),
     },
     Entry {

@@ -87,7 +87,8 @@ fn explicit_steps_that_are_too_long() {
 dimension = 2
 material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }]
 body = [{ name = "block", material = "m", element = "Q4", mass = "lumped", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [4, 4] } }]
-support = [{ on = ["block.bottom"], fix = ["x", "y"] }, { on = ["block.top"], fix = ["x"], move = { y = "-0.1*t" } }]
+support = [{ on = ["block.bottom"], fix = ["x", "y"] }]
+load = [{ on = ["block.top"], pressure = "0.5*t" }]
 time = { end = 8.0, step = 0.1, scheme = { kind = "central-difference" } }
 "#;
     let said = advice(pressed, &[]);
