@@ -18,6 +18,9 @@ use crate::{console, out, table};
 const SHOWN: [&str; 6] =
     ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
 
+/// Share of the energy up to which it is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
 pub(crate) fn report(directory: &Path) -> Result<ReportSummary, Failure> {
     let manifest = StudyManifest::read(directory)?;
@@ -97,7 +100,7 @@ fn metrics(study: &Study) -> Vec<String> {
     for (arm, row) in study.rows.iter().enumerate() {
         let reason = || row.reason.as_deref().unwrap_or("?");
         let cells = match row.status {
-            Some(Status::Finished) => columns.iter().map(|name| short_or_dash(row.value(name))).collect(),
+            Some(Status::Finished) => columns.iter().map(|name| cell(row, name)).collect(),
             Some(Status::Failed) => {
                 let alike =
                     study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
@@ -128,6 +131,15 @@ fn claim(v: &Verdict) -> String {
     );
     let [left, right] = [v.left, v.right].map(short_or_dash);
     format!("{word}  {}  ({left} against {right}{ratio})", v.claim.text)
+}
+
+/// A metric of an arm. A share far below one is round-off.
+fn cell(row: &Row, name: &str) -> String {
+    let is_zero = |x: f64| x != 0.0 && x.abs() < ROUND_OFF && unit(row, name).is_none();
+    match row.value(name) {
+        Some(x) if is_zero(x) => "≈ 0".to_owned(),
+        value => short_or_dash(value),
+    }
 }
 
 /// The unit of a metric; none if it is a number alone.
