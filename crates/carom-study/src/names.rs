@@ -165,8 +165,8 @@ mod tests {
             path: String::new(),
             sets: Vec::new(),
             case: None,
-            expect: Default::default(),
-            role: Default::default(),
+            expect: (String::new(), String::new()),
+            role: carom_record::study::design::Role::default(),
         };
         resolve(&mut file, &[draft("hht, Δt 5e-3"), draft("hht, Δt 2.5e-3")]);
         let compare = "restitution of 'hht, Δt 5e-3' > 2 * restitution of \"hht, Δt 2.5e-3\"";
