@@ -148,7 +148,8 @@ fn projected(run: &Run) -> Option<String> {
 fn shown(run: &Run) -> Vec<Metric> {
     let all = metrics::of_run(run);
     let metric = |name: &&str| all.iter().find(|metric| metric.name == **name && metric.value.is_some());
-    SHOWN.iter().filter_map(metric).cloned().collect()
+    let has_contact = !run.manifest.facts.contacts.is_empty();
+    SHOWN.iter().filter(|name| has_contact || **name != "penetration").filter_map(metric).cloned().collect()
 }
 
 /// Wall seconds by phase in the order of a step, then their total and the processor time.
