@@ -36,19 +36,7 @@ impl Case {
 
 /// The columns of history.csv of a case, in their order.
 pub fn history_columns(case: &Case) -> Vec<Column> {
-    let recorded = Recorded {
-        dimension: case.dimension,
-        bodies: case.bodies.iter().collect(),
-        yielding: case.yielding().map(|k| case.bodies[k].name.as_str()).collect(),
-        contacts: case.contacts.iter().collect(),
-        by_contact: case.contacts.len() > 1,
-        ties: case.ties.iter().collect(),
-        supports: case.supports.iter().collect(),
-        probes: case.probes.iter().collect(),
-        manufactured: case.manufactured.is_some(),
-        fallback: case.time.fallback,
-    };
-    recorded.columns(&case.labels())
+    Recorded::of(case).columns(&case.labels())
 }
 
 /// Parts of a case that determine the columns of history.csv.
@@ -104,7 +92,22 @@ impl Columns {
     }
 }
 
-impl Recorded<'_> {
+impl<'a> Recorded<'a> {
+    pub(super) fn of(case: &'a Case) -> Self {
+        Self {
+            dimension: case.dimension,
+            bodies: case.bodies.iter().collect(),
+            yielding: case.yielding().map(|k| case.bodies[k].name.as_str()).collect(),
+            contacts: case.contacts.iter().collect(),
+            by_contact: case.contacts.len() > 1,
+            ties: case.ties.iter().collect(),
+            supports: case.supports.iter().collect(),
+            probes: case.probes.iter().collect(),
+            manufactured: case.manufactured.is_some(),
+            fallback: case.time.fallback,
+        }
+    }
+
     pub(super) fn columns(&self, label: &Labels) -> Vec<Column> {
         let axes = &["x", "y", "z"][..self.dimension.clamp(1, 3)];
         let mut columns = Columns { axes, list: Vec::new() };
@@ -180,7 +183,10 @@ impl Recorded<'_> {
         }
         for probe in &self.probes {
             for quantity in &probe.record {
-                let (unit, what) = of_point(*quantity, label);
+                let (unit, mut what) = of_point(*quantity, label);
+                if quantity.is_stress() && self.yielding.contains(&&*probe.body) {
+                    what.push_str(", projected from the quadrature points: it may exceed the yield stress");
+                }
                 columns.add(&format!("{}.{}", probe.name, quantity.word()), unit, &what);
             }
         }

@@ -63,7 +63,7 @@ pub struct ContactFacts {
 pub struct Held {
     /// Name of the body.
     pub body: String,
-    /// Number of the axis; none for the direction across a side, which is not recorded.
+    /// Number of the axis; none for the direction across a side where only the case is known.
     pub axis: Option<usize>,
     /// Displacement as a formula in X, Y, Z and t; none where it is constant.
     pub displacement: Option<String>,

@@ -48,7 +48,7 @@ pub use group::{TITLES, group};
 pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub(crate) use overlay::OVERLAY;
 pub use overlay::overlays;
-pub use rebound::Impact;
+pub use rebound::{Impact, no_rebound};
 pub(crate) use run_table::{PRESSURE, WORK};
 pub(crate) use samples::{at, extreme};
 pub use signal::{Distance, Signal};

@@ -83,8 +83,21 @@ pub struct ContactCell<'r, 'a> {
     pub name: &'static str,
     /// Unit.
     pub unit: Unit,
+    /// Meaning.
+    pub meaning: &'static str,
     /// The value.
     pub value: ContactValue<'r, 'a>,
+}
+
+/// Cells of the components of a vector.
+fn vector<'r, 'a: 'r>(
+    names: [&'static str; 3],
+    unit: Unit,
+    meaning: &'static str,
+    values: &'r mut [f64],
+) -> impl Iterator<Item = ContactCell<'r, 'a>> {
+    let values = names.into_iter().zip(values);
+    values.map(move |(name, value)| ContactCell { name, unit, meaning, value: ContactValue::Real(value) })
 }
 
 impl<'a> ContactRow<'a> {
@@ -92,34 +105,49 @@ impl<'a> ContactRow<'a> {
     pub fn cells(&mut self, columns: ContactColumns) -> Vec<ContactCell<'_, 'a>> {
         use ContactValue::{Count, Real, Text};
         let ContactColumns { axes, has_field } = columns;
-        let in_space = if axes == 3 { 3 } else { 0 };
-        let cell = |name, unit, value| ContactCell { name, unit, value };
-        let length = |(name, value)| cell(name, Unit::Length, Real(value));
-        let number = |(name, value)| cell(name, Unit::None, Real(value));
-        let force = |(name, value)| cell(name, Unit::Force, Real(value));
+        let cell = |name, unit, meaning, value| ContactCell { name, unit, meaning, value };
         let mut cells = vec![
-            cell("step", Unit::None, Count(&mut self.step)),
-            cell("time", Unit::Time, Real(&mut self.time)),
-            cell("contact", Unit::None, Text(&mut self.contact)),
-            cell("node", Unit::None, Count(&mut self.node)),
+            cell("step", Unit::None, "step of the row in history.csv", Count(&mut self.step)),
+            cell("time", Unit::Time, "time of the row in history.csv", Real(&mut self.time)),
+            cell("contact", Unit::None, "name of the contact", Text(&mut self.contact)),
+            cell("node", Unit::None, "number of the node in the field files", Count(&mut self.node)),
         ];
-        cells.extend(["x", "y", "z"].into_iter().zip(&mut self.point).take(axes).map(length));
-        cells.push(cell("facet", Unit::None, Count(&mut self.facet)));
-        cells.push(number(("xi", &mut self.xi)));
-        cells.extend([("eta", &mut self.eta)].into_iter().take(in_space).map(number));
-        cells.push(length(("gap", &mut self.gap)));
-        cells.push(force(("multiplier", &mut self.multiplier)));
-        cells.push(cell("pressure", Unit::Stress, Real(&mut self.pressure)));
-        let normal = ["normal_x", "normal_y", "normal_z"].into_iter().zip(&mut self.normal);
-        cells.extend(normal.take(axes).map(number));
-        cells.push(cell("friction", Unit::None, Text(&mut self.friction)));
-        cells.push(force(("traction", &mut self.traction)));
-        cells.push(length(("slip", &mut self.slip)));
-        let rubbing = ["friction_x", "friction_y", "friction_z"].into_iter().zip(&mut self.rubbing);
-        cells.extend(rubbing.take(in_space).map(force));
+        let meaning = "current position of the node";
+        cells.extend(vector(["x", "y", "z"], Unit::Length, meaning, &mut self.point).take(axes));
+        let meaning = "facet of the other side with which the node is paired";
+        cells.push(cell("facet", Unit::None, meaning, Count(&mut self.facet)));
+        let meaning = "coordinate of the closest point on the facet, −1 to 1; on a triangle 0 to 1";
+        cells.push(cell("xi", Unit::None, meaning, Real(&mut self.xi)));
+        if axes == 3 {
+            let meaning = "second coordinate of the closest point on the facet";
+            cells.push(cell("eta", Unit::None, meaning, Real(&mut self.eta)));
+        }
+        cells.push(cell("gap", Unit::Length, "gap, negative if penetrating", Real(&mut self.gap)));
+        let meaning = "normal force λ ≤ 0";
+        cells.push(cell("multiplier", Unit::Force, meaning, Real(&mut self.multiplier)));
+        let meaning = "contact pressure at the node, per deformed area";
+        cells.push(cell("pressure", Unit::Stress, meaning, Real(&mut self.pressure)));
+        let meaning =
+            "unit normal out of the primary; the force on the secondary side is −multiplier × normal";
+        let names = ["normal_x", "normal_y", "normal_z"];
+        cells.extend(vector(names, Unit::None, meaning, &mut self.normal).take(axes));
+        let meaning = "stick or slip; none without friction";
+        cells.push(cell("friction", Unit::None, meaning, Text(&mut self.friction)));
+        let meaning = "force of friction on the secondary side, against the normal turned left by 90°; in space its length";
+        cells.push(cell("traction", Unit::Force, meaning, Real(&mut self.traction)));
+        let meaning = "slip since the node came into contact; in space its length";
+        cells.push(cell("slip", Unit::Length, meaning, Real(&mut self.slip)));
+        if axes == 3 {
+            let meaning = "force of friction on the secondary side";
+            let names = ["friction_x", "friction_y", "friction_z"];
+            cells.extend(vector(names, Unit::Force, meaning, &mut self.rubbing));
+        }
         if has_field {
-            cells.push(cell("nominal_pressure", Unit::Stress, Real(&mut self.nominal)));
-            cells.extend(["center_x", "center_y"].into_iter().zip(&mut self.center).map(length));
+            let meaning = "pressure of a mortar contact at the node, per reference area";
+            cells.push(cell("nominal_pressure", Unit::Stress, meaning, Real(&mut self.nominal)));
+            let meaning = "point at which the force of the row acts, of a mortar contact";
+            let names = ["center_x", "center_y", ""];
+            cells.extend(vector(names, Unit::Length, meaning, &mut self.center));
         }
         cells
     }

@@ -23,8 +23,7 @@ pub(crate) fn unit(run: &Run, what: &str) -> Option<String> {
 
 /// The metrics of a run, those of its rebound and of its measured data included.
 pub(crate) fn metrics_of(run: &Run) -> Vec<Metric> {
-    let mut all = metrics::all(&run.history);
-    all.extend(metrics::of_rebound(run));
+    let mut all = metrics::of_run(run);
     all.extend(metrics::overlays(run).iter().flat_map(|data| metrics::of_measured(&run.history, data)));
     all
 }

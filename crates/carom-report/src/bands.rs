@@ -77,6 +77,13 @@ pub(crate) struct Bands {
 }
 
 impl Bands {
+    /// One white band, of values that are zero to round-off.
+    pub(crate) const ZERO: Self = Self { low: -1.0, high: 1.0, count: 1 };
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.count == 1 && self.low < 0.0
+    }
+
     fn level(&self, i: usize) -> f64 {
         self.low + (self.high - self.low) * i as f64 / self.count as f64
     }
@@ -97,15 +104,17 @@ impl Bands {
 }
 
 /// Colour bands for all values except the outermost 0.5 % at either end, and whether values lie
-/// below or above them.
-pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
+/// below or above them; one white band if none exceeds `floor`.
+pub(crate) fn color_bands(values: impl Iterator<Item = f64>, floor: f64) -> (Bands, [bool; 2]) {
     let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     values.sort_unstable_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);
     let value = |k: usize| values.get(k).copied().unwrap_or(0.0);
+    if value(0).abs().max(value(last).abs()) <= floor {
+        return (Bands::ZERO, [false; 2]);
+    }
     let low = value(last / 200).min(0.0);
     let high = value(last - last / 200).max(0.0);
-    let (low, high) = if low == high { (-1.0, 1.0) } else { (low, high) };
     // Edges are half a step off round numbers, so that zero stress is white.
     let step = round_step(high - low, 24.0);
     let [below, above] = [-low, high].map(|x| (x / step - 0.5).ceil().max(0.0));
@@ -116,14 +125,15 @@ pub(crate) fn color_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2
 
 /// Colour bands from zero for values that are not negative: all but the largest 0.5 %, and whether
 /// values lie above them.
-pub(crate) fn positive_bands(values: impl Iterator<Item = f64>) -> (Bands, [bool; 2]) {
-    positive_bands_of(std::iter::once(values))
+pub(crate) fn positive_bands(values: impl Iterator<Item = f64>, floor: f64) -> (Bands, [bool; 2]) {
+    positive_bands_of(std::iter::once(values), floor)
 }
 
 /// Range of the values at several instants: all but the largest 0.5 % at each of them. In all
 /// instants together those of a short impact would be few.
 pub(crate) fn positive_bands_of(
     instants: impl Iterator<Item = impl Iterator<Item = f64>>,
+    floor: f64,
 ) -> (Bands, [bool; 2]) {
     let mut high = 0.0_f64;
     let mut most = 0.0_f64;
@@ -135,7 +145,9 @@ pub(crate) fn positive_bands_of(
             most = most.max(values[last]);
         }
     }
-    let high = if high > 0.0 { high } else { 1.0 };
+    if most <= floor {
+        return (Bands::ZERO, [false; 2]);
+    }
     let step = round_step(high, 16.0);
     let count = (high / step * (1.0 - 1e-12)).ceil();
     (Bands { low: 0.0, high: count * step, count: count as usize }, [false, most > count * step])
@@ -226,19 +238,29 @@ mod tests {
         assert!((paths.iter().map(area).sum::<f64>() - 5000.0).abs() < 2.0);
     }
 
+    /// A stress of 1e-12 moduli is a white body, not a colourful one.
+    #[test]
+    fn round_off_has_one_colour() {
+        let values = || (0..100).map(|i| 1e-12 * f64::from(i - 50));
+        for (bands, _) in [color_bands(values(), 1e-10), positive_bands(values(), 1e-10)] {
+            assert!(bands.is_zero() && bands.color(bands.of(4e-11)) == diverging(0.0));
+        }
+        assert!(color_bands(values(), 1e-13).0.count > 10);
+    }
+
     #[test]
     fn zero_is_in_the_middle_of_a_band_and_outliers_are_cut_off() {
         let values = (0..1000).map(|i| -0.03 * f64::from(i)).chain([-500.0, 0.3]);
-        let (bands, cut) = color_bands(values);
+        let (bands, cut) = color_bands(values, 0.0);
         assert_eq!((bands.low, bands.high, bands.count, cut), (-31.0, 1.0, 16, [true, false]));
         assert_eq!(bands.color(bands.of(0.0)), diverging(0.0));
-        assert!(color_bands(std::iter::empty()).0.count > 1);
-        let (bands, cut) = positive_bands((0..1000).map(f64::from).chain([5000.0]));
+        assert!(color_bands(std::iter::empty(), 0.0).0.is_zero());
+        let (bands, cut) = positive_bands((0..1000).map(f64::from).chain([5000.0]), 0.0);
         assert_eq!((bands.low, bands.high, bands.count, cut), (0.0, 1000.0, 10, [false, true]));
         // A short peak among many instants at rest.
         let instants =
             (0..1000).map(|k| (0..10).map(move |i| if k == 7 { 100.0 * f64::from(i) } else { 0.0 }));
-        let (bands, cut) = positive_bands_of(instants);
+        let (bands, cut) = positive_bands_of(instants, 0.0);
         assert_eq!((bands.high, cut), (900.0, [false, false]));
     }
 }

@@ -222,12 +222,12 @@ pub(crate) fn frame<'a>(instants: impl IntoIterator<Item = &'a Instant>) -> [f64
     around(NOTHING, instants.into_iter().flat_map(places))
 }
 
-/// Colour bands for the values at some instants.
-pub(crate) fn colors(instants: &[Instant]) -> (Bands, [bool; 2]) {
+/// Colour bands for the values at some instants, which are round-off up to `floor`.
+pub(crate) fn colors(instants: &[Instant], floor: f64) -> (Bands, [bool; 2]) {
     let used = |i: &Instant| {
         i.cells.iter().flat_map(|(_, nodes)| nodes.iter().map(|&k| i.values[k])).collect::<Vec<_>>()
     };
-    color_bands(instants.iter().flat_map(used))
+    color_bands(instants.iter().flat_map(used), floor)
 }
 
 /// The figure, broad and narrow; `obstacles` are the surfaces at each instant within `frame`, and

@@ -1,22 +1,17 @@
 //! "Expectations": what the case expects of the run, and what came out.
 
-use carom_record::Expectation;
+use carom_record::{Expectation, Sizes};
 use maud::{Markup, html};
 
 use crate::asked;
 use crate::document::{minus, or_dash};
-use crate::figures::columns_in;
-use crate::noise::largest;
 use crate::ordered::distinct;
 use crate::recorded::Recorded;
-use crate::results::is_round_off;
 use crate::scientific::{powers, significant};
 use crate::text::Label;
 
 /// Significant digits of a result beside its tolerance.
 const DIGITS: usize = 6;
-/// A result below this share of its columns is round-off.
-const ROUND_OFF: f64 = 1e-12;
 
 /// An expected value with its tolerance, which stay on one line.
 fn expected(text: &str) -> String {
@@ -31,18 +26,12 @@ fn repeated_sources(run: &Recorded) -> Vec<&String> {
     distinct(sources().filter(|source| source.chars().count() > 40).filter(is_repeated))
 }
 
-/// Whether a result is round-off of its columns or, as a length, of the model, and its tolerance is
-/// not of that size.
+/// Whether a result is round-off of its quantity, and its tolerance is not of that size.
 fn is_zero(run: &Recorded, e: &Expectation) -> bool {
     let (Some(got), Some(unit)) = (e.got, asked::unit(run, &e.what).filter(|unit| !unit.is_empty())) else {
         return false;
     };
-    let length = &run.case.units.length;
-    let columns = columns_in(run, &e.what).into_iter().filter(|column| run.history.unit(column) == unit);
-    let most = columns.filter_map(|column| run.column(&column).map(largest)).fold(0.0, f64::max);
-    let is_tiny = got != 0.0 && got.abs() < ROUND_OFF * most;
-    (is_tiny || *length == unit && is_round_off(run, got))
-        && e.tolerance.is_none_or(|tolerance| tolerance > got.abs())
+    Sizes::of(run).is_round_off(got, &unit) && e.tolerance.is_none_or(|tolerance| tolerance > got.abs())
 }
 
 /// The section of the page; nothing where the case has none.

@@ -1,16 +1,19 @@
 //! The figures of a run, and the columns and files from which they are drawn.
 
+use carom_case::ObstacleMotion;
 use carom_formula::Formula;
 
 use crate::chart::{Panel, Series};
 use crate::figure::Figure;
 use crate::histories::{HIGH, Histories, LOW, Line, tracks};
 use crate::instants::instants;
+use crate::labels::capitalised;
 use crate::noise::{force_size, largest};
 use crate::ordered::{distinct, grouped};
 use crate::palette::LINES;
 use crate::recorded::Recorded;
 use crate::scene::{Scene, scene};
+use crate::text::said_if;
 use crate::{maps, setup, stopped};
 
 /// Everything that can be drawn from a record.
@@ -63,8 +66,13 @@ fn probes(run: &Recorded, histories: &Histories) -> Option<Figure> {
     };
     let columns: Vec<&str> = columns.into_iter().filter(of_probe).collect();
     let caption = format!(
-        "Quantities at the probes.{}{} Data: `history.csv`, columns `PROBE.QUANTITY`.",
+        "Quantities at the probes.{}{}{} Data: `history.csv`, columns `PROBE.QUANTITY`.",
         histories.shaded(),
+        if columns.iter().any(|column| column.contains(".sigma_") || column.ends_with(".von_mises")) {
+            run.projected()
+        } else {
+            ""
+        },
         histories.sources(&columns)
     );
     histories.figure("probes", "Probes", caption, histories.probes(), &[])
@@ -79,26 +87,45 @@ fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
     });
     for stem in distinct(stems) {
         let (name, what) = stem.rsplit_once('.').unwrap_or((stem, ""));
-        let lines = Line::vector(run, stem, if what == "moment" { "M" } else { "R" });
+        let lines = Line::vector_of(run, stem, if what == "moment" { "M" } else { "R" }, name);
         let most = lines.iter().filter_map(|line| run.column(&line.column)).flatten();
         let least = 1e-10 * largest(most);
-        panels.extend(histories.vector(&format!("{what}, {name}"), HIGH, lines, least));
+        panels.extend(histories.vector(what, HIGH, lines, least));
     }
     let ties = &run.case.ties;
+    let of_supports = panels.iter().any(|panel: &Panel| !panel.series.is_empty());
     for tie in ties {
-        let lines = Line::vector(run, &format!("{}.force", tie.name), "f");
+        let lines = Line::vector_of(run, &format!("{}.force", tie.name), "f", &tie.name);
         let most = lines.iter().filter_map(|line| run.column(&line.column)).flatten();
         let least = 1e-10 * largest(most);
-        panels.extend(histories.vector(&format!("tie force, {}", tie.name), HIGH, lines, least));
+        panels.extend(histories.vector("tie force", HIGH, lines, least));
     }
-    let [of_ties, columns] = if ties.is_empty() {
-        ["", ""]
-    } else {
-        [" Tie force: on the secondary side of a tie.", ", `TIE.force_…`"]
-    };
+    let is_moved = |motion: &ObstacleMotion| matches!(motion, ObstacleMotion::Prescribed { .. });
+    let of_obstacles = run.case.contacts.iter().any(|contact| is_moved(&contact.motion));
+    let named = run.case.supports.iter().any(|support| support.name.is_some());
+    let (words, columns): (Vec<&str>, Vec<&str>) = [
+        (
+            of_supports && named && of_obstacles,
+            "Forces of the supports, and of obstacles that are moved, on the bodies.",
+            "`SUPPORT.reaction_…`, `CONTACT.reaction_…`",
+        ),
+        (
+            of_supports && named && !of_obstacles,
+            "Forces of the supports on the bodies.",
+            "`SUPPORT.reaction_…`",
+        ),
+        (of_supports && !named, "Forces of obstacles that are moved on the bodies.", "`CONTACT.reaction_…`"),
+        (!ties.is_empty(), "Tie force: on the secondary side of a tie.", "`TIE.force_…`"),
+    ]
+    .into_iter()
+    .filter(|(is_drawn, ..)| *is_drawn)
+    .map(|(_, words, columns)| (words, columns))
+    .unzip();
     let caption = format!(
-        "Forces of the supports, and of obstacles that are moved, on the bodies.{of_ties}{} Data: `history.csv`, columns `SUPPORT.reaction_…`{columns}.",
-        histories.shaded()
+        "{}{} Data: `history.csv`, columns {}.",
+        words.join(" "),
+        histories.shaded(),
+        columns.join(", ")
     );
     let title = if ties.is_empty() { "Support reactions" } else { "Forces of supports and ties" };
     histories.figure("reactions", title, caption, panels, &[])
@@ -108,14 +135,20 @@ fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
 fn force(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let size = 1e-9 * force_size(run).max(f64::MIN_POSITIVE);
     let mut panels = histories.vector("contact force", HIGH, Line::vector(run, "contact_force", "f"), size);
+    let is_drawn = |panels: &[Panel]| panels.iter().any(|panel| !panel.series.is_empty());
+    let mut by_contact = Vec::new();
     for contact in &run.case.contacts {
-        let lines = Line::vector(run, &format!("{}.force", contact.name), "f");
-        panels.extend(histories.vector(&format!("force, {}", contact.name), LOW, lines, size));
+        let lines = Line::vector_of(run, &format!("{}.force", contact.name), "f", &contact.name);
+        by_contact.extend(histories.vector("force", LOW, lines, size));
     }
+    let has_several = is_drawn(&by_contact);
+    panels.extend(by_contact);
     let impulses = Line::vector(run, "contact_impulse", "P");
     let most = impulses.iter().filter_map(|line| run.column(&line.column)).flatten();
     let least = 1e-9 * largest(most).max(f64::MIN_POSITIVE);
-    panels.extend(histories.vector("impulse", LOW, impulses, least));
+    let of_impulse = histories.vector("impulse", LOW, impulses, least);
+    let has_impulse = is_drawn(&of_impulse);
+    panels.extend(of_impulse);
     let shown = [
         "contact_force_x",
         "contact_force_y",
@@ -125,10 +158,14 @@ fn force(run: &Recorded, histories: &Histories) -> Option<Figure> {
         "contact_impulse_z",
     ];
     let caption = format!(
-        "Contact force on the secondary sides at the ends of the steps, and its impulse.{}{} Data: `history.csv`, \
-         columns `contact_force_…`, `CONTACT.force_…`, `contact_impulse_…`.",
+        "Contact force on the secondary sides at the ends of the steps{}{}.{}{} Data: `history.csv`, columns \
+         `contact_force_…`{}{}.",
+        said_if(has_several, ", in all and by contact"),
+        said_if(has_impulse, ", and its impulse"),
         histories.shaded(),
-        histories.sources(&shown)
+        histories.sources(&shown),
+        said_if(has_several, ", `CONTACT.force_…`"),
+        said_if(has_impulse, ", `contact_impulse_…`")
     );
     histories.figure("force", "Contact forces", caption, panels, &[])
 }
@@ -166,8 +203,10 @@ fn rotation(histories: &Histories, scene: &Scene) -> Option<Figure> {
 fn energy(run: &Recorded, histories: &Histories) -> Option<Figure> {
     const SHARE: f64 = 1e-6;
     let energies = ["total", "kinetic", "strain", "potential"].map(|name| Line::new(name, name));
-    let works = ["dissipation", "external_work", "contact_work", "friction_work", "plastic_work"]
-        .map(|name| Line::new(name, name.replace('_', " ")));
+    // Load steps have no balance of energy.
+    let works = ["dissipation", "external_work", "contact_work", "friction_work", "plastic_work"];
+    let works = works.into_iter().filter(|name| !(run.is_static() && *name == "dissipation"));
+    let works: Vec<Line> = works.map(|name| Line::new(name, name.replace('_', " "))).collect();
     let peak = |lines: &[Line]| {
         lines
             .iter()
@@ -176,14 +215,16 @@ fn energy(run: &Recorded, histories: &Histories) -> Option<Figure> {
             .fold(0.0_f64, |most, x| if x.is_finite() { most.max(x.abs()) } else { most })
     };
     let size = peak(&energies);
-    let panels = vec![
-        histories.panel("energy", HIGH, &energies, SHARE * size),
-        histories.panel("work", 150.0, &works, (SHARE * peak(&works)).max(1e-12 * size)),
-    ];
+    let of_energy = histories.panel("energy", HIGH, &energies, SHARE * size);
+    let of_work = histories.panel("work", 150.0, &works, (SHARE * peak(&works)).max(1e-12 * size));
+    let has_dissipation = of_work.series.iter().any(|series| series.label == "dissipation");
+    let has_work = of_work.series.len() > usize::from(has_dissipation);
+    let panels = vec![of_energy, of_work];
     let columns: Vec<&str> = energies.iter().chain(&works).map(|line| line.column.as_str()).collect();
     let caption = format!(
-        "Energies; accumulated work, and dissipation: all work less the change of the total energy. Curves below \
-         10^{{-6}} of the largest are omitted.{}{} Data: `history.csv`.",
+        "Energies{}{}. Curves below 10^{{-6}} of the largest are omitted.{}{} Data: `history.csv`.",
+        said_if(has_work, "; accumulated work"),
+        said_if(has_dissipation, "; dissipation: all work less the change of the total energy"),
         histories.shaded(),
         histories.sources(&columns)
     );
@@ -272,7 +313,7 @@ fn others(run: &Recorded, histories: &Histories) -> Option<Figure> {
 }
 
 /// The names of columns in what an expectation asks for.
-pub(crate) fn columns_in(run: &Recorded, what: &str) -> Vec<String> {
+fn columns_in(run: &Recorded, what: &str) -> Vec<String> {
     let sum = what.split_once("− (").map_or(what, |(column, _)| column);
     let words = sum.split(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ':')));
     words.filter(|word| run.column(word).is_some()).map(str::to_owned).collect()
@@ -292,11 +333,19 @@ fn formula<'a>(run: &'a Recorded, what: &str) -> Option<(String, Series<'a>)> {
 
 /// Iterations, active nodes and rejections by step, with the events.
 fn solver(run: &Recorded, histories: &Histories) -> Option<Figure> {
-    let all = [("newton", "iterations"), ("active", "active nodes"), ("rejected", "rejected")];
+    let all = [
+        ("newton", "iterations", "iterations per step"),
+        ("active", "active nodes", "contact nodes"),
+        ("rejected", "rejected", "rejected attempts"),
+    ];
     let occurs = |name: &str| run.column(name).is_some_and(|column| column.iter().any(|x| *x > 0.0));
-    let shown = all.into_iter().filter(|(name, _)| occurs(name));
+    let shown: Vec<_> = all.into_iter().filter(|(name, ..)| occurs(name)).collect();
     let panels =
-        shown.map(|(name, label)| histories.panel(label, 84.0, &[Line::new(name, "")], 0.0)).collect();
-    let caption = "Iterations per step, contact nodes, rejected attempts; ticks: events. Data: `history.csv`, `log.jsonl`.";
-    histories.figure("solver", "Solver", caption.to_owned(), panels, &tracks(run))
+        shown.iter().map(|(name, label, _)| histories.panel(label, 84.0, &[Line::new(*name, "")], 0.0));
+    let tracks = tracks(run);
+    let mut words: Vec<&str> = shown.iter().map(|(.., words)| *words).collect();
+    words.extend((!tracks.is_empty()).then_some("ticks: events"));
+    let log = said_if(!tracks.is_empty(), ", `log.jsonl`");
+    let caption = format!("{}. Data: `history.csv`{log}.", capitalised(&words.join("; ")));
+    histories.figure("solver", "Solver", caption, panels.collect(), &tracks)
 }

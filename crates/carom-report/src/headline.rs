@@ -1,6 +1,6 @@
 //! The five numbers of a run that a reader wants first.
 
-use carom_record::metrics;
+use carom_record::{Sizes, metrics};
 use maud::{Markup, html};
 
 use crate::asked::metrics_of;
@@ -26,26 +26,34 @@ impl Number {
     }
 }
 
+/// A time, with a prefix where an instant of this size has one.
+fn duration(x: f64, unit: &str) -> String {
+    if x < 1e-3 { amount(x, unit) } else { format!("{} {unit}", significant(x, 3)).trim_end().to_owned() }
+}
+
 /// Results of a run from which its headline numbers are chosen.
 struct Facts<'a> {
     run: &'a Recorded,
     scene: Option<&'a Scene>,
     metrics: Vec<metrics::Metric>,
+    sizes: Sizes,
 }
 
 /// The numbers fit for the run: of an impact, of bodies that are driven, of a static analysis, or
 /// of a free motion.
 pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
-    let facts = Facts { run, scene, metrics: metrics_of(run) };
+    let facts = Facts { run, scene, metrics: metrics_of(run), sizes: Sizes::of(run) };
     let impact =
         || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
     let inside =
         || [facts.peak_force(), facts.work(), facts.friction(), facts.plastic(), facts.largest_stress()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
+    let is_impact = !run.is_static() && run.has_contact() && !run.is_driven();
+    let no_rebound = if is_impact { metrics::no_rebound(run) } else { None };
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
-    } else if run.has_contact() && !run.is_driven() {
+    } else if is_impact {
         impact()
             .into_iter()
             .chain([facts.largest_stress(), facts.friction(), facts.plastic(), facts.displacement()])
@@ -75,6 +83,7 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
                     }
                 }
             }
+            @if let Some(why) = no_rebound { p.small { "No coefficient of restitution: " (why) "." } }
         }
     }
 }
@@ -129,9 +138,7 @@ impl Facts<'_> {
         let note = self
             .metric("contact_start")
             .map_or_else(String::new, |t| format!("from {}", instant_label(self.run, t)));
-        // In the unit of the instants.
-        let duration = format!("{} {}", significant(value, 3), self.run.time_unit());
-        Some(Number::new("Contact duration", duration.trim_end().to_owned(), note))
+        Some(Number::new("Contact duration", duration(value, self.run.time_unit()), note))
     }
 
     fn energy_lost(&self) -> Option<Number> {
@@ -159,6 +166,8 @@ impl Facts<'_> {
                 found.push((size(row), row, name));
             }
         }
+        let unit = history.unit("contact_force_x");
+        found.retain(|(size, ..)| !self.sizes.is_round_off(*size, unit));
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         let number = |(value, row, name): (f64, usize, &str)| {
             Some(Number::new(format!("Largest reaction, {name}"), self.force(value), self.at(row)))
@@ -167,12 +176,17 @@ impl Facts<'_> {
     }
 
     fn of_fields(&self, name: &str, peak: Option<&Peak>) -> Option<Number> {
-        let Peak { value, time, unit } = peak?;
+        let Peak { value, time, unit } =
+            peak.filter(|peak| !self.sizes.is_round_off(peak.value, &peak.unit))?;
         Some(Number::new(name, amount(*value, unit), format!("at {}", instant_label(self.run, *time))))
     }
 
     fn largest_stress(&self) -> Option<Number> {
-        self.of_fields("Largest von Mises stress", self.scene?.stress.as_ref())
+        let mut number = self.of_fields("Largest von Mises stress", self.scene?.stress.as_ref())?;
+        if self.run.case.yielding().next().is_some() {
+            number.note.push_str(", of the quadrature points");
+        }
+        Some(number)
     }
 
     fn displacement(&self) -> Option<Number> {
@@ -189,7 +203,8 @@ impl Facts<'_> {
 
     fn friction(&self) -> Option<Number> {
         let work = *self.run.column("friction_work")?.last()?;
-        (work != 0.0).then(|| Number::new("Work of friction", self.energy(work), "at the end"))
+        let is_zero = work == 0.0 || self.sizes.is_round_off(work, self.run.history.unit("total"));
+        (!is_zero).then(|| Number::new("Work of friction", self.energy(work), "at the end"))
     }
 
     fn plastic(&self) -> Option<Number> {

@@ -1,6 +1,6 @@
 //! Time histories: columns of a run as curves in panels, with measured data and expected values.
 
-use carom_record::{Run, metrics};
+use carom_record::{Run, Sizes, metrics};
 
 use crate::chart::{Chart, Options, Panel, Series, Track};
 use crate::figure::Figure;
@@ -30,6 +30,12 @@ pub(crate) struct Line {
 impl Line {
     pub(crate) fn new(column: impl Into<String>, label: impl Into<String>) -> Self {
         Self { column: column.into(), label: label.into() }
+    }
+
+    /// The components of [`Self::vector`], with the name of what has the vector.
+    pub(crate) fn vector_of(run: &Run, stem: &str, symbol: &str, name: &str) -> Vec<Self> {
+        let named = |line: Self| Self { label: format!("{}, {name}", line.label), ..line };
+        Self::vector(run, stem, symbol).into_iter().map(named).collect()
     }
 
     /// The components of a vector that are recorded.
@@ -82,15 +88,22 @@ impl<'a> Histories<'a> {
         both.map(|(height, lines)| self.panel(label, height, &lines, least)).into()
     }
 
-    /// Panels of the probes by quantity, without stresses of bodies that are not deformed.
+    /// Panels of the probes by quantity, without stresses of bodies that are not deformed, and what
+    /// is round-off.
     pub(crate) fn probes(&self) -> Vec<Panel<'_>> {
+        let sizes = Sizes::of(self.run);
         let mut found = Vec::new();
         for column in &self.run.history.columns {
             let Some((probe, quantity)) = column.name.rsplit_once('.') else { continue };
             let Some(number) = self.run.case.probes.iter().position(|known| known.name == probe) else {
                 continue;
             };
-            let is_idle = is_stress(quantity) && is_noise(self.run, &column.name);
+            let is_idle = if is_stress(quantity) {
+                is_noise(self.run, &column.name)
+            } else {
+                let most = self.run.column(&column.name).map_or(0.0, largest);
+                !column.unit.is_empty() && sizes.is_round_off(most, &column.unit)
+            };
             if let Some(y) = self.run.column(&column.name).filter(|_| !is_idle) {
                 let label = format!("{} at {probe}", symbol(quantity));
                 let color = LINES[number % LINES.len()];

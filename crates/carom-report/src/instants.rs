@@ -5,6 +5,7 @@ use carom_record::{Cell, FieldEntry, FieldSet, Stop, metrics};
 use crate::bodies::{self, Instant};
 use crate::figure::Figure;
 use crate::labels::instant_label;
+use crate::noise::floor;
 use crate::obstacles;
 use crate::recorded::Recorded;
 use crate::sheet::Legend;
@@ -76,26 +77,29 @@ pub(crate) fn instants(run: &Recorded, notes: &mut Vec<String>) -> Option<Figure
         bars::figure(run, &sets, (during, files))
     } else if bodies::fill_space(first) {
         let pictures = space::instants(run, &sets)?;
-        let caption = format!("Deformed bodies with von Mises stress {during}. Data: {files}.");
+        let caption =
+            format!("Deformed bodies with von Mises stress {during}.{} Data: {files}.", run.projected());
         Figure::new("bodies", caption, pictures)
     } else {
-        let caption = format!(
-            "Deformed bodies with vertical stress {during}; blue: compression, red: tension. Data: {files}."
-        );
-        Figure::new("bodies", caption, in_plane(run, &sets)?)
+        let (pictures, is_zero) = in_plane(run, &sets)?;
+        let colours = if is_zero { "zero to round-off" } else { "blue: compression, red: tension" };
+        let projected = run.projected();
+        let caption =
+            format!("Deformed bodies with vertical stress {during}; {colours}.{projected} Data: {files}.");
+        Figure::new("bodies", caption, pictures)
     };
     "Instants".clone_into(&mut figure.title);
     Some(figure)
 }
 
-/// Plane bodies with obstacles, all at one scale.
-fn in_plane(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
+/// Plane bodies with obstacles, all at one scale, and whether their stress is round-off.
+fn in_plane(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<([String; 2], bool)> {
     let first = &sets.first()?.1;
     let stress = first.unit("stress");
     let length = first.unit("displacement");
     let instant = |(time, set): &_| Instant::new(set, "stress", 1, instant_label(run, *time));
     let list: Vec<Instant> = sets.iter().filter_map(instant).collect();
-    let (bands, cut) = bodies::colors(&list);
+    let (bands, cut) = bodies::colors(&list, floor(run, first, "stress"));
     let frame = bodies::frame(&list);
     let obstacles = obstacles::all(run, frame);
     let times = sets.iter().map(|(time, _)| *time);
@@ -114,5 +118,5 @@ fn in_plane(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[String; 2]> {
     let walks: Vec<Vec<_>> = walks.iter().map(inside).collect();
     let legend = Legend { bands: &bands, cut, label: "σ_{yy}", unit: stress };
     let title = "Deformed bodies with vertical Cauchy stress";
-    Some(bodies::figure(&list, (&walks, &marks, wide), title, &legend, length))
+    Some((bodies::figure(&list, (&walks, &marks, wide), title, &legend, length), bands.is_zero()))
 }

@@ -59,14 +59,27 @@ pub(crate) fn time_label(run: &Recorded) -> String {
     }
 }
 
-/// `t = 0.315 s`, with the digits that tell the rows of a run apart.
+/// `t = 0.315 s`, `t = 1.8 µs`, with the digits that tell the rows of a run apart.
 pub(crate) fn instant_label(run: &Recorded, time: f64) -> String {
     let apart = run.times().windows(2).map(|pair| pair[1] - pair[0]);
     let step = apart.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
     // Six digits, or more where rows are closer.
-    let digits = if step < 1e-5 * time.abs() { instant(time, step, 4) } else { number(time) };
-    let label = format!("t = {digits} {}", run.time_unit());
-    label.trim_end().to_owned()
+    let digits =
+        |time: f64, step: f64| if step < 1e-5 * time.abs() { instant(time, step, 4) } else { number(time) };
+    let unit = run.time_unit();
+    let exponent = thousands(time);
+    match prefixed(unit, exponent).filter(|_| time.abs() < 1e-3) {
+        Some(unit) => {
+            let scale = 10f64.powi(exponent);
+            format!("t = {} {unit}", digits(time / scale, step / scale))
+        }
+        None => format!("t = {} {unit}", digits(time, step)).trim_end().to_owned(),
+    }
+}
+
+/// The power of a thousand below a number; 0 of zero.
+fn thousands(x: f64) -> i32 {
+    if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0 + 1e-12).floor() as i32 }
 }
 
 /// A unit times a power of ten: with another prefix where it has one, otherwise with the power.
@@ -95,7 +108,7 @@ pub(crate) fn given_amount(x: f64, unit: &str) -> String {
 
 /// A number in a format, divided by a power of a thousand for which its unit has a prefix.
 fn in_thousands(x: f64, unit: &str, format: impl Fn(f64) -> String) -> String {
-    let exponent = if x == 0.0 || !x.is_finite() { 0 } else { 3 * (x.abs().log10() / 3.0).floor() as i32 };
+    let exponent = thousands(x);
     match prefixed(unit, exponent) {
         Some(unit) => format!("{} {unit}", format(x / 10f64.powi(exponent))),
         None => format!("{} {unit}", format(x)).trim_end().to_owned(),

@@ -11,6 +11,7 @@ use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
 use crate::chart::{ground, opened, tick_label, time_axis, turned, write_text};
 use crate::figure::{Figure, NARROW};
+use crate::noise::floor;
 use crate::ordered::grouped;
 use crate::palette::LINES;
 use crate::pen::{Pen, open_grid};
@@ -111,7 +112,8 @@ pub(crate) fn pressure(run: &Recorded) -> Option<Figure> {
     }
     let mut coloured = Vec::new();
     for side in sides {
-        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure));
+        let floor = floor(run, &fields, "contact_pressure");
+        let (bands, cut) = positive_bands(side.rows.iter().map(|(row, _)| row.pressure), floor);
         coloured.push((side, Colours::Pressure(bands, cut)));
     }
     let maps = Maps {

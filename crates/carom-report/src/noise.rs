@@ -1,10 +1,11 @@
-//! Values that are round-off: they are not drawn, because an axis that fits them shows nothing
-//! else.
+//! Values that are round-off: they are not drawn, because an axis or colours that fit them show
+//! nothing else.
 
 use carom_case::MaterialSpec;
-use carom_record::{Run, metrics};
+use carom_record::{FieldSet, Run, metrics, modulus};
 
 use crate::labels::is_stress;
+use crate::recorded::Recorded;
 
 /// A value below this share of the size of its quantity is round-off.
 const SHARE: f64 = 1e-10;
@@ -22,17 +23,34 @@ pub(crate) fn force_size(run: &Run) -> f64 {
     multipliers.chain(resultants).fold(0.0, f64::max)
 }
 
+/// Values of an array of a field file up to which it is round-off: stresses compared with the shear
+/// modulus, displacements with the size of the bodies, velocities with the speed of shear waves.
+pub(crate) fn floor(run: &Recorded, fields: &FieldSet, array: &str) -> f64 {
+    let size = match array {
+        "displacement" => {
+            let span = |axis: usize| {
+                let (low, high) = crate::axis::range(fields.points.iter().map(|point| &point[axis]));
+                high - low
+            };
+            (0..3).map(span).fold(0.0, f64::max)
+        }
+        "velocity" => {
+            let speed = |material: &MaterialSpec| (material.mu / material.density).sqrt();
+            run.case.materials.iter().map(speed).fold(0.0, f64::max)
+        }
+        "stress" | "von_mises" | "principal_stress" | "contact_pressure" => modulus(run),
+        _ => 1.0,
+    };
+    SHARE * size
+}
+
 /// Whether a column is zero, or round-off of its quantity, throughout: a force compared with
 /// [`force_size`], a stress compared with the shear modulus.
 pub(crate) fn is_noise(run: &Run, name: &str) -> bool {
     let Some(values) = run.column(name) else { return true };
     let most = largest(values);
     let size = match name.rsplit_once('.') {
-        Some((_, quantity)) if is_stress(quantity) => {
-            let stored = run.manifest.case.get("materials").cloned().unwrap_or_default();
-            let materials: Vec<MaterialSpec> = serde_json::from_value(stored).unwrap_or_default();
-            materials.iter().map(|material| material.mu).fold(0.0, f64::max)
-        }
+        Some((_, quantity)) if is_stress(quantity) => modulus(run),
         None if name.starts_with("contact_force") => force_size(run),
         _ => 0.0,
     };

@@ -16,7 +16,7 @@ use crate::recorded::Recorded;
 use crate::results::results;
 use crate::scientific::powers;
 use crate::stopped;
-use crate::text::{Label, typeset};
+use crate::text::{Label, Prose, typeset};
 
 /// A part of the page, with its heading and its name in links; without a heading it is in no table
 /// of contents.
@@ -128,7 +128,7 @@ fn warning_line(warning: &Warning) -> Markup {
     html! {
         p {
             b.miss { (typeset(place)) } ": " (Label(&powers(&typeset(what)))) "; " (Label(&typeset(why))) ". Try "
-            (Label(&typeset(advice))) ". " span.small { "(" code { (id) } ")" }
+            (Prose(&typeset(advice))) ". " span.small { "(" code { (id) } ")" }
         }
     }
 }

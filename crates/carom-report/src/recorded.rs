@@ -60,6 +60,14 @@ impl Recorded {
         self.column("active").is_some_and(|column| column.iter().any(|count| *count > 0.0))
     }
 
+    /// The sentence of a caption on stresses at nodes and probes where bodies yield.
+    pub(crate) fn projected(&self) -> &'static str {
+        if self.case.yielding().next().is_none() {
+            return "";
+        }
+        " Stresses of bodies that yield are projected from the quadrature points, and may exceed the yield stress."
+    }
+
     /// The unit of time; none of a load parameter.
     pub(crate) fn time_unit(&self) -> &str {
         if self.is_static() { "" } else { self.history.unit("time") }

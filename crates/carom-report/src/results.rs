@@ -1,23 +1,22 @@
 //! All metrics of a run by subject, without those that have no meaning in it.
 
+use carom_record::Sizes;
 use carom_record::metrics::{self, Metric};
 use maud::{Markup, html};
 
 use crate::labels::{instant_label, number};
-use crate::noise::largest;
 use crate::recorded::Recorded;
 use crate::scientific::significant;
 use crate::text::Label;
 
 /// Significant digits of a value.
 const DIGITS: usize = 4;
-/// A value below this share of the size of its quantity is round-off.
-const ROUND_OFF: f64 = 1e-12;
 
 /// The table of all metrics.
 pub(crate) fn results(run: &Recorded) -> Markup {
     let mut known = metrics::of_run(run);
     known.retain(|metric| metric.value.is_some() && !metric.is_work() && is_meaningful(run, metric));
+    let sizes = Sizes::of(run);
     let groups = by_title(&known.iter().collect::<Vec<_>>());
     html! {
         table.results {
@@ -28,7 +27,7 @@ pub(crate) fn results(run: &Recorded) -> Markup {
                     tr {
                         td { code { (metric.name) } }
                         td.n {
-                            @if metric.value.is_some_and(|x| is_round_off(run, x)) { "≈ 0" } @else { (Label(&value(metric))) }
+                            @if metric.value.is_some_and(|x| sizes.is_round_off(x, &metric.unit)) { "≈ 0" } @else { (Label(&value(metric))) }
                         }
                         td.unit { @if metric.unit.is_empty() { "–" } @else { (Label(&metric.unit)) } }
                         td { (metric.definition) }
@@ -52,13 +51,6 @@ fn value(metric: &Metric) -> String {
     // Times of rows have few digits.
     let is_exact = metric.name.starts_with("contact_") || (metric.unit.is_empty() && x.fract() == 0.0);
     if is_exact { number(x) } else { significant(x, DIGITS) }
-}
-
-/// Whether a length, such as the result of an expectation, is round-off of the positions.
-pub(crate) fn is_round_off(run: &Recorded, x: f64) -> bool {
-    let centers = run.history.columns.iter().filter(|column| column.name.contains(".center_"));
-    let most = largest(centers.filter_map(|column| run.column(&column.name)).flatten());
-    x != 0.0 && x.abs() < ROUND_OFF * if most > 0.0 { most } else { 1.0 }
 }
 
 /// Whether a metric says something about this run: those of contact need one, those of the

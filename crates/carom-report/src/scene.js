@@ -82,7 +82,7 @@ const scene = async (root, data) => {
       outline.set(key, outline.has(key) ? null : { line, side });
       for (let i = 1; i < line.length; i++) {
         edges.push(line[i - 1], line[i]);
-        if (side) marked[side - 1].push(line[i - 1], line[i]);
+        for (const k of [0, 1]) if (side >> k & 1) marked[k].push(line[i - 1], line[i]);
       }
     }
   });
@@ -297,7 +297,7 @@ const scene = async (root, data) => {
         const trace = line => line.forEach((v, i) => g[i ? "lineTo" : "moveTo"](...projected([position[3 * v], position[3 * v + 1], 0], image)));
         for (let side = 0; side < 3; side++) {
           g.beginPath();
-          for (const part of boundary) if (part.side === side || !side) trace(part.line);
+          for (const part of boundary) if (part.side & side || !side) trace(part.line);
           if (side && !on(".sides")) continue;
           g.lineWidth = side ? 3 : 1.1; g.strokeStyle = side ? SIDES[side - 1] : ink; g.lineJoin = "round"; g.stroke();
         }

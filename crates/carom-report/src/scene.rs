@@ -10,12 +10,13 @@ mod quantities;
 
 use std::collections::HashMap;
 
-use carom_record::{FieldEntry, FieldSet};
+use carom_record::{FieldEntry, FieldSet, LARGEST_VON_MISES};
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
 use crate::bodies::{fill_space, is_plane, places};
 use crate::labels::number;
+use crate::noise::largest;
 use crate::obstacles;
 use crate::recorded::Recorded;
 use crate::scientific::significant;
@@ -40,7 +41,8 @@ pub(crate) struct Scene {
     pub(crate) figure: Markup,
     /// For the script.
     pub(crate) data: Value,
-    /// The largest von Mises stress and displacement at any point of the frames.
+    /// The largest von Mises stress and displacement in any frame: at the nodes, and the stress at
+    /// the quadrature points where that is recorded.
     pub(crate) stress: Option<Peak>,
     pub(crate) displacement: Option<Peak>,
     /// Times of the frames, and the rotation of each body in them.
@@ -55,15 +57,28 @@ pub(crate) struct Peak {
     pub(crate) unit: String,
 }
 
-/// The larger one of a peak and the largest length of the vectors of an array.
-fn higher(known: Option<Peak>, fields: &FieldSet, name: &str, time: f64) -> Option<Peak> {
-    let Some(array) = fields.array(name) else { return known };
+/// The largest length of the vectors of an array.
+fn largest_length(fields: &FieldSet, name: &str, time: f64) -> Option<Peak> {
+    let array = fields.array(name)?;
     let vectors = array.values.chunks_exact(array.components);
     let lengths = vectors.map(|vector| vector.iter().map(|x| x * x).sum::<f64>().sqrt());
     let value = lengths.filter(|x| x.is_finite()).fold(0.0, f64::max);
-    match known {
-        Some(known) if known.value >= value => Some(known),
-        _ => Some(Peak { value, time, unit: array.unit.clone() }),
+    Some(Peak { value, time, unit: array.unit.clone() })
+}
+
+/// The largest von Mises stress.
+fn largest_stress(fields: &FieldSet, time: f64) -> Option<Peak> {
+    let Some(array) = fields.of_cells(LARGEST_VON_MISES) else {
+        return largest_length(fields, "von_mises", time);
+    };
+    Some(Peak { value: largest(&array.values), time, unit: array.unit.clone() })
+}
+
+/// The larger one of two peaks, the first of equal ones.
+fn higher(known: Option<Peak>, next: Option<Peak>) -> Option<Peak> {
+    match (known, next) {
+        (Some(known), Some(next)) => Some(if next.value > known.value { next } else { known }),
+        (known, next) => known.or(next),
     }
 }
 
@@ -173,8 +188,8 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
         let Some(values) = values else { return false };
         frames.push(Frame { values });
         turned.push(rotations(&fields));
-        stress = higher(stress.take(), &fields, "von_mises", entry.time);
-        displacement = higher(displacement.take(), &fields, "displacement", entry.time);
+        stress = higher(stress.take(), largest_stress(&fields, entry.time));
+        displacement = higher(displacement.take(), largest_length(&fields, "displacement", entry.time));
         true
     });
     if frames.len() < 2 {
@@ -256,6 +271,7 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
                 @if largest > 0.0 {
                     " Longest arrow: contact force of " (Label(&format!("{} {}", significant(largest, 2), run.history.unit("contact_force_x")))) "."
                 }
+                (run.projected())
                 @if dimension == 3 && !inside { " The inside is not in the page, which would exceed 8 MB." }
             }
         }

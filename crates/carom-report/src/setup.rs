@@ -7,7 +7,7 @@ mod table;
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use carom_case::{Case, FormulaSpec, LoadKind, LoadSpec, SupportSpec, load_variables};
+use carom_case::{BodySpec, Case, FormulaSpec, LoadKind, LoadSpec, SupportSpec, load_variables};
 use carom_record::{Block, Cell, FieldSet};
 
 use crate::again::{again, once};
@@ -15,6 +15,7 @@ use crate::axis::round_step;
 use crate::bodies::{self, Instant, bezier, corners, edge_nodes, edges, fill_space, places};
 use crate::chart::{WIDTH, opened, write_text};
 use crate::figure::{Figure, NARROW};
+use crate::labels::{capitalised, listed};
 use crate::obstacles::{self, Walk};
 use crate::palette::LINES;
 use crate::pen::{GRID, NOTHING, Pen, Point, around, path, polyline};
@@ -103,13 +104,34 @@ pub(crate) fn figure(run: &Recorded, fields: &FieldSet) -> Option<Figure> {
     } else {
         String::new()
     };
-    let caption = format!(
-        "Initial configuration. Triangles: fixed directions; double arrows: prescribed motion; arrows: loads, \
-         gravity g and initial velocity v_{{0}}; diamonds: probes.{view}"
-    );
+    let caption = format!("Initial configuration.{}{view}", symbols(&run.case));
     let mut figure = Figure::new("setup", caption, pictures);
     figure.key = table(&run.case, Some(fields));
     Some(figure)
+}
+
+/// The sentence of the caption on the symbols that the case has.
+fn symbols(case: &Case) -> String {
+    let is_any = |formulas: &dyn Fn(&BodySpec) -> &[FormulaSpec]| {
+        case.bodies.iter().any(|body| !formulas(body).iter().all(FormulaSpec::is_zero))
+    };
+    let arrows = [
+        (!case.loads.is_empty(), "loads"),
+        (is_any(&|body| &body.gravity), "gravity g"),
+        (is_any(&|body| &body.velocity), "initial velocity v_{0}"),
+    ];
+    let arrows: Vec<&str> = arrows.into_iter().filter(|(has, _)| *has).map(|(_, what)| what).collect();
+    let all = [
+        (
+            case.supports.iter().any(|s| s.normal || !s.fix.is_empty()),
+            "triangles: fixed directions".to_owned(),
+        ),
+        (case.supports.iter().any(|s| !s.moves.is_empty()), "double arrows: prescribed motion".to_owned()),
+        (!arrows.is_empty(), format!("arrows: {}", listed(&arrows))),
+        (!case.probes.is_empty(), "diamonds: probes".to_owned()),
+    ];
+    let all: Vec<String> = all.into_iter().filter(|(has, _)| *has).map(|(_, words)| words).collect();
+    if all.is_empty() { String::new() } else { format!(" {}.", capitalised(&all.join("; "))) }
 }
 
 /// The middle of a facet of a side.

@@ -185,6 +185,11 @@ pub(crate) fn color_bar(out: &mut String, legend: &Legend, x: f64, (top, bottom)
          stroke-width=\"0.7\"/>",
         bottom - top
     );
+    if bands.is_zero() {
+        write_text(out, x + width + 7.0, 0.5 * (top + bottom) + 4.3, "", "≈ 0");
+        write_text(out, x - 2.0, top - 20.0, "", label);
+        return;
+    }
     let axis = Axis::new((bands.low, bands.high), 6.0, true);
     for (value, tick) in &axis.ticks {
         let y = bottom - (bottom - top) * axis.position(*value);

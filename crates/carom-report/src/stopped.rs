@@ -71,7 +71,7 @@ fn causes(run: &Recorded, stop: &Stop) -> Markup {
                 @for warning in warnings {
                     li {
                         b { (typeset(&warning.place)) } ": " (Label(&powers(&typeset(&warning.what)))) ". Try "
-                        (Label(&typeset(&warning.advice))) "."
+                        (Prose(&typeset(&warning.advice))) "."
                     }
                 }
             }
@@ -120,16 +120,22 @@ fn where_table(place: &StopPlace, unit: &str) -> Markup {
 }
 
 fn advice(stop: &Stop) -> Markup {
+    let has_commands = stop.advice.iter().any(|advice| !advice.sets.is_empty());
     html! {
         @if !stop.advice.is_empty() {
             h3 { "What to try" }
             div.scroll {
                 table.advice {
-                    thead { tr { th { "Remedy" } th { "Command, with the case file as " code { "case.toml" } } } }
+                    thead { tr {
+                            th { "Remedy" }
+                            @if has_commands { th { "Command, with the case file as " code { "case.toml" } } }
+                        } }
                     @for advice in &stop.advice {
                         tr {
                             td { (Prose(&advice.what)) }
-                            td { @if !advice.sets.is_empty() { code { (command(&advice.sets)) } } }
+                            @if has_commands {
+                                td { @if !advice.sets.is_empty() { code { (command(&advice.sets)) } } }
+                            }
                         }
                     }
                 }

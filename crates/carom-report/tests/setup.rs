@@ -61,6 +61,7 @@ fn the_plane_has_symbols_for_what_is_fixed_and_acts() {
         r#"
 title = "Block"
 dimension = 2
+units = {{ length = "mm", time = "s", mass = "t" }}
 {MATERIAL}
 [[body]]
 name = "block"
@@ -81,6 +82,7 @@ pressure = "1e3*X*t"
 name = "floor"
 secondary = "block.bottom"
 primary = {{ plane = {{ point = [0.0, -0.5], normal = [0.0, 1.0] }} }}
+method = "mortar"
 mu = 0.3
 [[probe]]
 name = "A"
@@ -113,12 +115,13 @@ scheme = {{ kind = "hu" }}
     let page = fs::read_to_string(&summary.page).unwrap().replace('\u{a0}', " ");
     for part in [
         "<code>0.1*sin(t)</code>",
-        "<code>1e3*X*t</code> Pa",
-        "1 cells, 4 nodes, x = 0 to 2, y = 0 to 1 m",
+        "<code>1e3*X*t</code> MPa",
+        "1 cells, 4 nodes, x = 0 to 2, y = 0 to 1 mm",
         "u<sub>x</sub> = u<sub>y</sub> = 0",
-        "rigid plane, μ = <code>0.3</code>",
+        "rigid plane, mortar method, μ = <code>0.3</code>",
         "ν = 0.25",
-        "Plane strain, thickness 1 m",
+        "Plane strain, thickness 1 mm",
+        "Triangles: fixed directions; double arrows: prescribed motion; arrows: loads and gravity g; diamonds: probes.",
     ] {
         assert!(page.contains(part), "{part}");
     }
@@ -162,4 +165,6 @@ scheme = {{ kind = "hu" }}
         |color: &str| svg.lines().find(|line| line.contains(&format!("stroke=\"{color}\""))).unwrap();
     assert!(!outline("#d55e00").contains("dasharray") && outline("#44607c").contains("dasharray"));
     assert!(svg.contains("data:image/png") && !svg.contains("NaN"));
+    let page = fs::read_to_string(&summary.page).unwrap();
+    assert!(page.contains("Triangles: fixed directions. View") && !page.contains("diamonds"));
 }

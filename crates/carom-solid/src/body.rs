@@ -159,6 +159,12 @@ pub trait Body: Geometry {
     /// `past`.
     fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64;
 
+    /// Stress and strain at the quadrature points of a cell, which remember `past`.
+    ///
+    /// # Errors
+    /// J where it is not positive.
+    fn quadrature_points(&self, cell: usize, y: &[f64], past: &Past) -> Result<Vec<PointState>, Inverted>;
+
     /// Certifies that J > 0 everywhere in consecutive cells from `first` on, not only at quadrature
     /// points. Overwrites `margins` with the distance of each by which every component of its
     /// nodes' positions may change, relative to a common translation, while that remains true; ∞ if

@@ -119,17 +119,10 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
         let first = own.filter(|_| costed).map_or(*step, |own| own * step / steps[0]);
         sets.push((format!("time.step={first:?}"), format!("steps[{level}]")));
         let of = if costed { "cost of " } else { "" };
-        Draft { name: format!("{}, {of}Δt {}", method.name, short(*step)), sets, role, ..method.clone() }
+        Draft { name: format!("{}, {of}Δt {step:e}", method.name), sets, role, ..method.clone() }
     };
     let count = steps.len().max(1);
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
-}
-
-/// Text of a time step for names: at most four digits, `1.875e-3`.
-fn short(step: f64) -> String {
-    let text = format!("{step:.3e}");
-    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
 }
 
 /// Whether the reference is computed: it is requested, and no arm has its name.
@@ -372,7 +365,6 @@ mod tests {
         assert_eq!(names[3], "time.scheme=chung-hulbert 0.6, time.step=0.0005");
         assert_eq!(arms[2].sets[0].0, "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.6 }");
         assert_eq!(arms[2].sets[1].1, "grid.\"time.step\"[0]");
-        assert_eq!([short(1.875e-3), short(2.0 / 300.0), short(0.01)], ["1.875e-3", "6.667e-3", "1e-2"]);
         assert_eq!(slug("Hu, Δt 1.875e-4"), "hu-dt-1.875e-4");
     }
 

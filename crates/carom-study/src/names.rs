@@ -1,10 +1,57 @@
-//! The names in a study: those of arms, and references to them.
+//! The names in a study: those of arms, and references to them. A number in a name may be written
+//! in any way: `hht, Δt 0.005` is the arm `hht, Δt 5e-3`.
 
 use carom_record::study::Comparison;
 use carom_run::case::Problem;
 
 use crate::arms::Draft;
 use crate::file::{self, StudyFile};
+
+/// Gives the arms that are named with other spellings of their numbers the names that they have.
+pub(crate) fn resolve(file: &mut StudyFile, drafts: &[Draft]) {
+    let names: Vec<&str> = drafts.iter().map(|draft| draft.name.as_str()).collect();
+    let own = |given: &mut String| {
+        if let Some(name) = meant(given, &names) {
+            name.clone_into(given);
+        }
+    };
+    file.reference.iter_mut().for_each(own);
+    let quoted = file.claims.iter_mut().map(|claim| &mut claim.compare);
+    let quoted = quoted.chain(file.expects.iter_mut().flat_map(|expect| {
+        std::iter::once(&mut expect.what).chain(expect.order.iter_mut().map(|order| &mut order.of))
+    }));
+    for text in quoted {
+        for quote in ['"', '\''] {
+            let named = |(k, part): (usize, &str)| match meant(part, &names) {
+                Some(name) if k % 2 == 1 => name.to_owned(),
+                _ => part.to_owned(),
+            };
+            let parts: Vec<String> = text.split(quote).enumerate().map(named).collect();
+            *text = parts.join(&quote.to_string());
+        }
+    }
+}
+
+/// The name that has the same words and numbers; none if the given one is a name.
+fn meant<'a>(given: &str, names: &[&'a str]) -> Option<&'a str> {
+    if names.contains(&given) {
+        return None;
+    }
+    let given = with_plain_numbers(given);
+    names.iter().copied().find(|name| with_plain_numbers(name) == given)
+}
+
+/// A name with its numbers in one notation. Digits within words, as in `TR-BDF2`, are not numbers.
+fn with_plain_numbers(name: &str) -> String {
+    let plain = |word: &str| {
+        let (word, end) = word.split_at(word.trim_end_matches([',', ';', ')']).len());
+        let start = word.len() - word.trim_start_matches(['(', '=']).len();
+        let start = word.rfind('=').map_or(start, |at| at + 1);
+        let number = word[start..].parse().map(|x: f64| format!("{x:e}"));
+        format!("{}{}{end}", &word[..start], number.as_deref().unwrap_or(&word[start..]))
+    };
+    name.split(' ').map(plain).collect::<Vec<_>>().join(" ")
+}
 
 /// Checks the names of arms: that there are some, that they are unique, and that references to them
 /// exist.
@@ -81,5 +128,48 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
                 problems.push(Problem::new(&path, "this is not a valid comparison", why, help));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_spelt_in_any_way() {
+        let names = ["hht, Δt 5e-3", "TR-BDF2 (rho=0.5), cost of Δt 2.5e-3", "time.step=0.001, n=4"];
+        let cases = [
+            ("hht, Δt 0.005", Some(names[0])),
+            ("TR-BDF2 (rho=.50), cost of Δt 0.0025", Some(names[1])),
+            ("time.step=1e-3, n=4", Some(names[2])),
+            ("hht, Δt 5e-4", None),
+            ("hht,  Δt 0.005", None),
+            (names[0], None),
+        ];
+        for (given, meant_name) in cases {
+            assert_eq!(meant(given, &names), meant_name, "{given}");
+        }
+    }
+
+    #[test]
+    fn claims_name_the_arms_as_they_are() {
+        let mut file = StudyFile {
+            claims: vec![carom_record::study::Claim {
+                text: String::new(),
+                compare: "restitution of 'hht, Δt 0.005' > 2 * restitution of \"hht, Δt 0.0025\"".into(),
+            }],
+            ..StudyFile::default()
+        };
+        let draft = |name: &str| Draft {
+            name: name.into(),
+            path: String::new(),
+            sets: Vec::new(),
+            case: None,
+            expect: (String::new(), String::new()),
+            role: carom_record::study::design::Role::default(),
+        };
+        resolve(&mut file, &[draft("hht, Δt 5e-3"), draft("hht, Δt 2.5e-3")]);
+        let compare = "restitution of 'hht, Δt 5e-3' > 2 * restitution of \"hht, Δt 2.5e-3\"";
+        assert_eq!(file.claims[0].compare, compare);
     }
 }

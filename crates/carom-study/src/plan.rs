@@ -112,13 +112,14 @@ fn opened(
     case: Option<&Document>,
 ) -> Result<(StudyFile, Vec<Draft>, BTreeMap<String, Base>), CaseError> {
     let mut problems = Vec::new();
-    let file = file::read(study, folder, &mut problems);
+    let mut file = file::read(study, folder, &mut problems);
     if let Some(problem) = arms::too_many(&file, study.text().len()) {
         return Err(study.diagnose_all(&[problem]));
     }
     let drafts = arms::all(&file);
     // Parts that could not be read would give misleading errors about unknown names.
     if problems.is_empty() {
+        names::resolve(&mut file, &drafts);
         names::check(&file, &drafts, &mut problems);
     }
     if !problems.is_empty() {

@@ -80,6 +80,13 @@ pub enum Quantity {
     StrainXz,
 }
 
+impl Quantity {
+    /// Whether it is a component of the Cauchy stress, or von Mises stress.
+    pub fn is_stress(self) -> bool {
+        self == Self::VonMises || self.word().starts_with("sigma_")
+    }
+}
+
 /// What is written, and how often.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Keys)]
 #[keys(name = "[output]")]

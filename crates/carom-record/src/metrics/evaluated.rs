@@ -103,7 +103,7 @@ pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
     let is_defined = |metric: &Metric| metric.value.is_some();
     let mut metrics: Vec<Metric> = evaluated(&HISTORY, &given).chain(evaluated(&REBOUND, &given)).collect();
     let impacts = given.episodes.len().min(IMPACTS);
-    if impacts > 1 {
+    if impacts > 1 && !run.manifest.facts.is_static {
         metrics.extend((1..=impacts).map(|n| Metric {
             name: format!("energy_lost:{n}").into(),
             value: energy_lost_at(&run.history, n),

@@ -8,7 +8,9 @@
 //!       by the integrator, by contact forces and projections, by plastic flow
 //! ```
 //!
-//! All metrics are divided by the largest kinetic + strain energy of any row.
+//! All metrics are divided by the largest kinetic + strain energy of any row. Static runs have no
+//! losses but those of friction and plastic flow: the work of load steps is a sum over few steps,
+//! and its difference from the energies is the error of this sum.
 
 use super::episode::Episode;
 use super::given::Given;
@@ -18,21 +20,34 @@ use crate::History;
 /// `time.energy_guard`.
 pub const MUCH_CREATED: f64 = 0.02;
 
+/// Largest kinetic + strain energy of any row.
+fn scale(history: &History) -> Option<f64> {
+    let kinetic = history.column("kinetic")?;
+    let strain = history.column("strain")?;
+    kinetic.iter().zip(strain).map(|(k, s)| k + s).reduce(f64::max).filter(|&s| s > 0.0)
+}
+
+/// Whether steps have a balance of energy: load steps have none.
+fn has_balance(given: &Given) -> bool {
+    given.run.is_none_or(|run| !run.manifest.facts.is_static)
+}
+
 /// Change ΔE of the total energy less the external work, by row; and the largest kinetic + strain
 /// energy.
 fn changes(history: &History) -> Option<(Vec<f64>, f64)> {
-    let [kinetic, strain, total, work] =
-        ["kinetic", "strain", "total", "external_work"].map(|name| history.column(name));
-    let kinetic = kinetic?;
-    let strain = strain?;
-    let total = total?;
-    let work = work?;
-    let scale = kinetic.iter().zip(strain).map(|(k, s)| k + s).reduce(f64::max).filter(|&s| s > 0.0)?;
+    let total = history.column("total")?;
+    let work = history.column("external_work")?;
+    let scale = scale(history)?;
     Some((total.iter().zip(work).map(|(e, w)| e - total[0] - w).collect(), scale))
 }
 
+/// [`changes`] of a run whose steps have a balance.
+fn balanced(given: &Given) -> Option<(Vec<f64>, f64)> {
+    changes(given.history).filter(|_| has_balance(given))
+}
+
 pub(super) fn lost(given: &Given) -> Option<f64> {
-    let (changes, scale) = changes(given.history)?;
+    let (changes, scale) = balanced(given)?;
     Some(-changes.last()? / scale)
 }
 
@@ -43,14 +58,14 @@ pub(super) fn created(given: &Given) -> Option<f64> {
 }
 
 pub(super) fn drift(given: &Given) -> Option<f64> {
-    let (changes, scale) = changes(given.history)?;
+    let (changes, scale) = balanced(given)?;
     Some(changes.iter().fold(0.0, |most, x| f64::max(most, x.abs())) / scale)
 }
 
 /// Largest energy that time integrator and contact dissipated or created up to any time. Work of
 /// contact counts only where no obstacle moves: a moving one does work on the bodies, as a load.
 pub(super) fn by_scheme(given: &Given) -> Option<f64> {
-    let (_, scale) = changes(given.history)?;
+    let (_, scale) = balanced(given)?;
     let moves = given.run.is_some_and(|run| run.manifest.facts.contacts.iter().any(|contact| contact.moves));
     let dissipation = given.history.column("dissipation")?;
     let work = given.history.column("contact_work").filter(|_| !moves);
@@ -60,11 +75,11 @@ pub(super) fn by_scheme(given: &Given) -> Option<f64> {
 
 /// Last value of a cumulative column, divided by the scale.
 fn share(given: &Given, column: &str) -> Option<f64> {
-    Some(given.last(column)? / changes(given.history)?.1)
+    Some(given.last(column)? / scale(given.history)?)
 }
 
 pub(super) fn by_integrator(given: &Given) -> Option<f64> {
-    share(given, "dissipation")
+    share(given, "dissipation").filter(|_| has_balance(given))
 }
 
 /// Energy dissipated by friction, divided by the largest kinetic + strain energy; none without
@@ -92,7 +107,7 @@ pub(super) fn permanent_set(given: &Given) -> Option<f64> {
 }
 
 pub(super) fn by_contact(given: &Given) -> Option<f64> {
-    share(given, "contact_work").map(|work| 0.0 - work)
+    share(given, "contact_work").filter(|_| has_balance(given)).map(|work| 0.0 - work)
 }
 
 fn over(history: &History, episode: Episode) -> Option<f64> {
@@ -102,7 +117,7 @@ fn over(history: &History, episode: Episode) -> Option<f64> {
 }
 
 pub(super) fn at_worst_impact(given: &Given) -> Option<f64> {
-    let losses = given.episodes.iter().filter_map(|e| over(given.history, *e));
+    let losses = given.episodes.iter().filter(|_| has_balance(given)).filter_map(|e| over(given.history, *e));
     losses.reduce(|worst, next| if next.abs() > worst.abs() { next } else { worst })
 }
 

@@ -43,18 +43,21 @@ pub struct Impact<'a> {
 }
 
 impl<'a> Impact<'a> {
-    /// The first impact of a run. None without contact, where the striker did not approach before
-    /// it, where it strikes nothing but itself or several parties of different velocities, where
-    /// one of them is tied to another body, with which it moves, and where the velocity of a
-    /// support is not known.
-    pub fn first(run: &'a Run) -> Option<Self> {
-        let episode = first_episode(&run.history)?;
-        let striker = striker(&run.history)?;
-        let before = episode.start.checked_sub(1)?;
-        let (others, normal) = struck(striker, run, episode)?;
+    /// The first impact of a run.
+    ///
+    /// # Errors
+    /// The reason why there is none: no contact, a striker that did not approach before it, or
+    /// strikes nothing but itself or several parties of different velocities, one that is tied to
+    /// another body, with which it moves, or the unknown velocity of a support.
+    pub fn first(run: &'a Run) -> Result<Self, &'static str> {
+        let episode = first_episode(&run.history).ok_or("no contact closed")?;
+        let striker = striker(&run.history).ok_or("no body moves")?;
+        let before = episode.start.checked_sub(1).ok_or("contact is closed at the start")?;
+        let (others, normal) =
+            struck(striker, run, episode).ok_or("the fastest body strikes nothing but itself")?;
         let is_tied = |body: &str| run.manifest.facts.tied.iter().any(|tied| tied == body);
         if is_tied(striker) || others.iter().flatten().any(|other| is_tied(other)) {
-            return None;
+            return Err("a tied body moves with another one");
         }
         let along = |row: usize| {
             let of_striker = velocity(run, Some(striker), row)?;
@@ -65,19 +68,31 @@ impl<'a> Impact<'a> {
             let alike = others.iter().all(|other| other == first);
             alike.then(|| relative.zip(normal).map(|(w, n)| w * n).sum::<f64>())
         };
-        let approach = -along(before)?;
+        let approach = -along(before)
+            .ok_or("several bodies of different velocities are struck, or that of a support is not known")?;
         let separation = episode.end.and_then(along);
         let parties = others.iter().copied().chain([Some(striker)]);
         let fastest = parties.filter_map(|party| velocity(run, party, before)).flatten();
         let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
-        (approach > AT_REST * fastest).then_some(Self { striker, others, normal, approach, separation })
+        let is_approach = approach > AT_REST * fastest;
+        let impact = Self { striker, others, normal, approach, separation };
+        if is_approach { Ok(impact) } else { Err("the bodies did not approach each other before contact") }
     }
 }
 
 /// Newton's coefficient of restitution.
 pub(super) fn restitution(run: &Run) -> Option<f64> {
-    let impact = Impact::first(run)?;
+    let impact = Impact::first(run).ok()?;
     Some(impact.separation? / impact.approach)
+}
+
+/// Why a run has no coefficient of restitution.
+pub fn no_rebound(run: &Run) -> Option<&'static str> {
+    match Impact::first(run) {
+        Ok(impact) if impact.separation.is_some() => None,
+        Ok(_) => Some("the first contact lasts to the end of the run"),
+        Err(why) => Some(why),
+    }
 }
 
 /// Parties struck by a striker in an episode, and the direction of the normal impulse on it;

@@ -133,7 +133,7 @@ pub(super) const HISTORY: [Definition; 29] = [
         Unit::None,
         "max_t [E(t) − E(s) − m⁺] / max(E*, Σ |ΔW|), E = total − external_work, at its minimum before t at s; m = −Σ c Δy·ΔF from s to t",
         "Krenk 2006",
-        "largest rise of the energy (total − work of loads and supports) above its lowest value before, without the error of work that is computed with mean forces of steps; divided by the largest kinetic + strain energy or, if larger, the sum of all |work|",
+        "largest rise of the energy (total − work of loads and supports) above its lowest value before, less the error of works that are computed from mean forces of steps; divided by the largest kinetic + strain energy or, if larger, the sum of all |work|",
         ledger::created,
     ),
     d(

@@ -38,6 +38,9 @@ fn metric(given: &Given, name: &str) -> Result<f64, Reason> {
         _ if PRESSURE.iter().any(|d| d.name == name) => {
             format!("{name} is defined only for {}", defined(name)).into()
         }
+        _ if given.run.is_some_and(|run| run.manifest.facts.is_static) => {
+            format!("not defined for load steps; definition: {}", definition.meaning).into()
+        }
         _ => format!("not defined for this record; definition: {}", definition.meaning).into(),
     })
 }

@@ -13,6 +13,9 @@ use super::roles::as_in_arm;
 use crate::metrics::Overlay;
 use crate::{Expect, Machine, Manifest, RecordError, Run, Source, Status, json};
 
+/// A cost is matched when it is within this fraction of the budget.
+const OFF_BUDGET: f64 = 0.1;
+
 /// The files a study was made from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StudySource {
@@ -123,6 +126,16 @@ impl StudyManifest {
         let Some(design) = &self.design else { return false };
         let other = arm.role.method.as_ref().is_some_and(|m| *m != design.cost_of);
         !arm.role.fine && other && (design.kind == Kind::MatchedCost || arm.role.by_cost)
+    }
+
+    /// Whether the cost of an arm is matched, but more than 10 % off its budget.
+    pub fn is_off_budget(&self, arm: &Arm) -> bool {
+        self.by_cost(arm) && arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET)
+    }
+
+    /// The arms that are off their budget.
+    pub fn off_budget(&self) -> impl Iterator<Item = &Arm> {
+        self.arms.iter().filter(|arm| self.is_off_budget(arm))
     }
 
     /// The required accuracy: an error of 0.05 by default.

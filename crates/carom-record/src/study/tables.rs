@@ -189,6 +189,7 @@ impl Study {
             tied: verdict.map_or(&[], |verdict| &verdict.alike),
             reasons: ranking.verdict.as_ref().map_or_else(|why| why, |verdict| &verdict.reasons),
             doubts: verdict.map_or(&[], |verdict| &verdict.confidence_reasons),
+            off_budget: self.manifest.off_budget().map(|arm| (arm.name.as_str(), arm.role.cost)).collect(),
             apart,
         }
     }
@@ -206,6 +207,9 @@ struct Stated<'a> {
     tied: &'a [String],
     reasons: &'a [String],
     doubts: &'a [String],
+    /// Arms of matched cost that missed their budget, with the share of it that they took.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    off_budget: Vec<(&'a str, Option<f64>)>,
     apart: Vec<(&'a str, &'a str)>,
 }
 

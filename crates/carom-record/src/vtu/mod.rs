@@ -23,6 +23,11 @@ const NAMED: &str = "body ";
 /// Beginning of the name of a material's number in the field data.
 const MATERIAL: &str = "material ";
 
+/// Name of the cell array with the largest von Mises stress at the quadrature points of each cell.
+/// It is recorded where bodies yield: values at nodes are projected and may exceed the yield
+/// stress.
+pub const LARGEST_VON_MISES: &str = "largest_von_mises";
+
 /// Shape of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
@@ -113,6 +118,17 @@ impl Block {
     }
 }
 
+/// A number for each cell of all blocks, block after block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellArray {
+    /// Name.
+    pub name: String,
+    /// Unit label, may be empty.
+    pub unit: String,
+    /// Cell after cell.
+    pub values: Vec<f64>,
+}
+
 /// A quantity at the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointArray {
@@ -136,6 +152,8 @@ pub struct FieldSet {
     pub blocks: Vec<Block>,
     /// Quantities at the points.
     pub arrays: Vec<PointArray>,
+    /// Quantities of the cells.
+    pub of_cells: Vec<CellArray>,
     /// Materials of the cells, where a body has several.
     pub materials: CellMaterials,
 }
@@ -153,6 +171,11 @@ impl FieldSet {
     /// A quantity by name.
     pub fn array(&self, name: &str) -> Option<&PointArray> {
         self.arrays.iter().find(|a| a.name == name)
+    }
+
+    /// A quantity of the cells by name.
+    pub fn of_cells(&self, name: &str) -> Option<&CellArray> {
+        self.of_cells.iter().find(|a| a.name == name)
     }
 
     /// Unit of a quantity; empty when it has none or does not exist.
@@ -196,6 +219,11 @@ pub(crate) mod tests {
                 array("stress", "N/m²", 6),
                 array("contact_pressure", "", 1),
             ],
+            of_cells: vec![CellArray {
+                name: "largest".into(),
+                unit: "Pa".into(),
+                values: vec![1.5, f64::MIN_POSITIVE, -0.0],
+            }],
             materials: CellMaterials {
                 names: vec!["steel".into(), "a \"b\"".into()],
                 of_cells: vec![0, 1, 0],

@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use super::{Block, Cell, CellMaterials, FieldSet, MATERIAL, NAMED, PointArray};
+use super::{Block, Cell, CellArray, CellMaterials, FieldSet, MATERIAL, NAMED, PointArray};
 use crate::Reason;
 
 const APPENDED: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
@@ -98,6 +98,14 @@ impl FieldSet {
                 return Err("a cell has no material of a name".into());
             }
         }
+        let mut of_cells = Vec::new();
+        for array in
+            piece.cell_data.arrays.iter().filter(|array| !["body", "material"].contains(&&*array.name))
+        {
+            let values = numbers(data, array, cells, 1)?;
+            let unit = array.unit.clone().unwrap_or_default();
+            of_cells.push(CellArray { name: array.name.clone(), unit, values });
+        }
         let mut arrays = Vec::new();
         for array in piece.point_data.arrays {
             let components = array.components.unwrap_or(1);
@@ -105,7 +113,8 @@ impl FieldSet {
             let unit = array.unit.unwrap_or_default();
             arrays.push(PointArray { name: array.name, unit, components, values });
         }
-        Ok(Self { points: coordinates.as_chunks::<3>().0.to_vec(), blocks: blocks.found, arrays, materials })
+        let points = coordinates.as_chunks::<3>().0.to_vec();
+        Ok(Self { points, blocks: blocks.found, arrays, of_cells, materials })
     }
 }
 

@@ -70,6 +70,13 @@ impl FieldSet {
             }
         }
         let cells: usize = self.blocks.iter().map(|block| block.cells().count()).sum();
+        if let Some(array) = self.of_cells.iter().find(|array| array.values.len() != cells) {
+            return error(format!(
+                "array `{}` has {} values for {cells} cells",
+                array.name,
+                array.values.len()
+            ));
+        }
         let CellMaterials { names, of_cells } = &self.materials;
         if !of_cells.is_empty() && (of_cells.len() != cells || of_cells.iter().any(|k| *k >= names.len())) {
             let got = of_cells.len();
@@ -141,6 +148,10 @@ impl FieldSet {
         if !self.materials.of_cells.is_empty() {
             let materials = self.materials.of_cells.iter().map(|&number| (number as i32).to_le_bytes());
             p.array("Int32", "Name=\"material\"", "", materials);
+        }
+        for array in &self.of_cells {
+            let attributes = format!("Name=\"{}\"", escape(&array.name));
+            p.array("Float64", &attributes, &array.unit, array.values.iter().map(|v| v.to_le_bytes()));
         }
         p.head.push_str("</CellData>\n<Points>\n");
         let points = self.points.iter().flatten().map(|x| x.to_le_bytes());

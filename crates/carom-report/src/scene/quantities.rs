@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::packed::Frame;
 use crate::bands::{Bands, color_bands, positive_bands_of};
 use crate::chart::open;
+use crate::noise::floor;
 use crate::recorded::Recorded;
 use crate::sheet::{Legend, color_bar};
 
@@ -49,11 +50,14 @@ pub(super) struct Quantity {
     /// Axes across which a mirror image has the opposite sign.
     odd: [bool; 3],
     is_positive: bool,
+    /// Values up to this one are round-off.
+    floor: f64,
 }
 
 /// The channels that are stored, and the quantities that follow from them; the first is shown at
 /// first.
-pub(super) struct Choice {
+pub(super) struct Choice<'a> {
+    run: &'a Recorded,
     pub(super) channels: Vec<Channel>,
     pub(super) quantities: Vec<Quantity>,
 }
@@ -62,11 +66,11 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Components of the stress in the field files, as pairs of axes.
 const STRESS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
 
-impl Choice {
+impl<'a> Choice<'a> {
     /// The fields of a run in at most so many channels; the displacement is stored in any case.
-    pub(super) fn new(run: &Recorded, fields: &FieldSet, most: usize) -> Self {
+    pub(super) fn new(run: &'a Recorded, fields: &FieldSet, most: usize) -> Self {
         let dimension = run.case.dimension;
-        let mut choice = Self { channels: Vec::new(), quantities: Vec::new() };
+        let mut choice = Self { run, channels: Vec::new(), quantities: Vec::new() };
         let axes: Vec<usize> = (0..dimension).collect();
         let most = most.max(dimension + 1);
         choice.vector(fields, "displacement", "u", &axes, most);
@@ -128,6 +132,7 @@ impl Choice {
                 channels: vec![self.channels.len()],
                 odd,
                 is_positive: matches!(array, "von_mises" | "contact_pressure"),
+                floor: floor(self.run, fields, array),
             });
             self.channels.push(Channel { array: array.to_owned(), component });
         }
@@ -155,6 +160,7 @@ impl Choice {
             like.map_or(String::new(), |q| q.unit.clone())
         };
         let is_positive = rule == Rule::Length;
+        let floor = like.map_or(0.0, |quantity| quantity.floor);
         self.quantities.push(Quantity {
             name: name.to_owned(),
             symbol: symbol.to_owned(),
@@ -163,6 +169,7 @@ impl Choice {
             channels,
             odd: [false; 3],
             is_positive,
+            floor,
         });
     }
 }
@@ -185,9 +192,9 @@ impl Quantity {
         // Few nodes of a body are in contact.
         let is_counted = |value: &f64| self.symbol != "p_{c}" || *value > 0.0;
         if self.is_positive {
-            positive_bands_of(frames.iter().map(|frame| of_frame(frame).filter(is_counted)))
+            positive_bands_of(frames.iter().map(|frame| of_frame(frame).filter(is_counted)), self.floor)
         } else {
-            color_bands(frames.iter().flat_map(of_frame))
+            color_bands(frames.iter().flat_map(of_frame), self.floor)
         }
     }
 

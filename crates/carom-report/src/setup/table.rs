@@ -4,10 +4,11 @@
 use std::collections::HashSet;
 
 use carom_case::{
-    BodySpec, Case, ContactSpec, FormulaSpec, Law, LoadKind, LoadSpec, MaterialSpec, ObstacleMotion,
-    Overhang, Plane, PlasticSpec, PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
+    BodySpec, Case, ContactSpec, Enforcement, FormulaSpec, Law, LoadKind, LoadSpec, MaterialSpec, Method,
+    ObstacleMotion, Overhang, Plane, PlasticSpec, PrimarySpec, ProbeSpec, SupportSpec, TieSpec, Units,
 };
 use carom_record::FieldSet;
+use carom_record::units::Labels;
 use maud::{Markup, html};
 
 use super::Part;
@@ -52,12 +53,12 @@ fn model(case: &Case) -> Option<String> {
     }
 }
 
+fn labels(units: &Units) -> Labels {
+    Labels::of(&units.length, &units.time, &units.mass)
+}
+
 fn stress(units: &Units) -> String {
-    match (&*units.mass, &*units.length, &*units.time) {
-        ("kg", "m", "s") => "Pa".to_owned(),
-        ("g", "mm", "ms") => "MPa".to_owned(),
-        (mass, length, time) => format!("{mass}/({length} {time}^2)"),
-    }
+    labels(units).stress
 }
 
 /// `(0, -9.81)`; a single component without parentheses.
@@ -182,7 +183,10 @@ fn load(load: &LoadSpec, units: &Units) -> Row {
         }
     };
     let unit = match &load.kind {
-        LoadKind::BodyForce { .. } => format!("{}/({}^2 {}^2)", units.mass, units.length, units.time),
+        LoadKind::BodyForce { .. } => match labels(units).force {
+            named if named.ends_with('N') => format!("{named}/{}^3", units.length),
+            _ => format!("{}/({}^2 {}^2)", units.mass, units.length, units.time),
+        },
         LoadKind::Traction { .. } | LoadKind::Pressure { .. } => stress(units),
     };
     let words = html! {
@@ -228,6 +232,12 @@ fn contact(contact: &ContactSpec, units: &Units) -> Row {
             None => (rigid),
         }
         (motion)
+        @if contact.method == Method::Mortar { ", mortar method" }
+        @match contact.enforcement {
+            Enforcement::Multiplier => {}
+            Enforcement::Penalty => { ", penalty" }
+            Enforcement::Augmented => { ", augmented Lagrangian" }
+        }
         @if friction.exists() {
             @if let Some(mu) = &friction.mu { ", μ = " code { (mu) } }
             @if let Some(mu) = friction.mu_dynamic { ", sliding " (given(mu)) }

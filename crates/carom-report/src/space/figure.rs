@@ -10,6 +10,7 @@ use super::wires::wires;
 use crate::bands::positive_bands;
 use crate::bodies::places;
 use crate::labels::instant_label;
+use crate::noise::floor;
 use crate::pen::{GRID, NOTHING, Pen, Point, around, path};
 use crate::recorded::Recorded;
 use crate::sheet::{Legend, Sheet};
@@ -37,7 +38,7 @@ pub(crate) fn instants(run: &Recorded, sets: &[(f64, FieldSet)]) -> Option<[Stri
     let values = list.iter().flat_map(|(_, _, mises)| {
         skin.iter().flat_map(|facet| &facet.nodes).map(|&k| mises[k]).collect::<Vec<_>>()
     });
-    let (bands, cut) = positive_bands(values);
+    let (bands, cut) = positive_bands(values, floor(run, &sets[0].1, "von_mises"));
     let frames = list.iter().map(|(_, places, _)| frame(&skin, places, &view));
     let mut wide = frames.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].max(b[3])])?;
     let rigid = wires(run, box_around(list.iter().flat_map(|(_, places, _)| box_of(&skin, places))));

@@ -8,7 +8,6 @@ use maud::{Markup, html};
 
 use super::collected::{Origin, in_time, time_unit, twin};
 use super::comparison::methods;
-use super::settings::is_off_budget;
 use crate::digits::{count, five, three};
 use crate::document::{file, labelled, or_dash};
 use crate::labels::with_unit;
@@ -60,7 +59,7 @@ fn columns<'a>(study: &'a Study, ranking: &'a Ranking) -> Vec<Column<'a>> {
     let noise = move |arm: usize| of_arm(arm)?.noise.map(three);
     let step_of = |arm: usize| {
         let arm = &study.manifest.arms[arm];
-        let budget = if is_off_budget(study, arm) { " !" } else { "" };
+        let budget = if study.manifest.is_off_budget(arm) { " !" } else { "" };
         Some(step(arm, "time.step").map(five)? + budget)
     };
     let late = |arm: usize| Some(three(study.compared.get(arm)?.as_ref()?.late.as_ref()?.1));
@@ -101,7 +100,7 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
     let all = methods(study).into_iter().flat_map(|(_, arms)| arms);
     let without = all.filter(|arm| !is_ranked(*arm) && !is_apart(*arm));
     let without: Vec<&str> = without.map(|arm| study.rows[arm].name.as_str()).collect();
-    let is_any_off = study.manifest.arms.iter().any(|arm| is_off_budget(study, arm));
+    let is_any_off = study.manifest.off_budget().next().is_some();
     html! {
         div {
             table.metrics.ranking {

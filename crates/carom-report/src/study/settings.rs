@@ -11,9 +11,6 @@ use crate::figure::Figure;
 use crate::setup;
 use crate::text::Label;
 
-/// A cost is matched when it is within this fraction of the budget.
-const OFF_BUDGET: f64 = 0.1;
-
 /// Arms other than those of a computed reference, with their numbers.
 fn arms(study: &Study) -> impl Iterator<Item = (usize, &Arm)> {
     study.manifest.arms.iter().enumerate().filter(|(_, arm)| !arm.role.fine)
@@ -96,9 +93,7 @@ fn design(study: &Study) -> Markup {
     let levels: Vec<String> =
         levels.map(|(i, h)| format!("level {}: Δt = {}", i + 1, in_time(study, *h))).collect();
     let missed: Vec<String> = manifest
-        .arms
-        .iter()
-        .filter(|arm| is_off_budget(study, arm))
+        .off_budget()
         .map(|arm| {
             let share = arm.role.cost.map_or_else(|| "unknown".to_owned(), three);
             format!("{} ({share})", arm.name)
@@ -120,9 +115,4 @@ fn design(study: &Study) -> Markup {
             }
         }
     }
-}
-
-/// Whether the cost of an arm, where it is matched, is more than 10 % off its budget.
-pub(super) fn is_off_budget(study: &Study, arm: &Arm) -> bool {
-    study.manifest.by_cost(arm) && arm.role.cost.is_none_or(|share| (share - 1.0).abs() > OFF_BUDGET)
 }

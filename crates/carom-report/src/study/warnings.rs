@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::collected::Origin;
 use crate::labels::listed;
 use crate::ordered::grouped;
-use crate::text::{Label, typeset};
+use crate::text::{Label, Prose, typeset};
 
 /// Largest number of arms that are named; of more, the numbers are given.
 const FEW: usize = 4;
@@ -64,7 +64,7 @@ pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
                             @if same.len() > 1 { " (" (study.rows[arms[0]].name) "; similar in the others)" }
                             "; " (typeset(&warning.why)) "."
                         }
-                        td { (typeset(&warning.advice)) } td { (names(study, &arms)) }
+                        td { (Prose(&typeset(&warning.advice))) } td { (names(study, &arms)) }
                     }
                 }
             }

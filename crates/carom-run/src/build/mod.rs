@@ -38,6 +38,7 @@ use carom_solid::{
 
 use side::side;
 use supports::Supported;
+pub(crate) use supports::axes_across;
 use ties::Ties;
 use tying::Tying;
 use weights::Weights;

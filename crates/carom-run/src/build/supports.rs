@@ -1,7 +1,7 @@
 //! Supports: the dofs that they fix, and the dofs whose reactions are recorded.
 
 use carom_case::{Case, Problem};
-use carom_mechanics::model::{BodyInstance, Support};
+use carom_mechanics::model::{BodyInstance, Model, Support};
 
 use super::side::side;
 
@@ -51,6 +51,14 @@ pub(super) fn supported(
         }
     }
     Supported { fixed, supports }
+}
+
+/// The axis across each side that is held across, in the order of the supports and their sides.
+pub(crate) fn axes_across(case: &Case, model: &Model) -> Vec<Option<usize>> {
+    let sides = case.supports.iter().filter(|support| support.normal).flat_map(|support| &support.on);
+    let axis =
+        |name: &String| across(&side(&model.parts, name, "").ok()?.nodes, &model.reference, case.dimension);
+    sides.map(axis).collect()
 }
 
 /// Deviation from a plane, relative to the size of a side, that is round-off of its coordinates.

@@ -12,7 +12,7 @@ use carom_algebra::principal;
 use carom_case::Case;
 use carom_mechanics::model::{Model, past_of, von_mises};
 use carom_mechanics::{State, Surfaces};
-use carom_record::{Block, Cell, CellMaterials, FieldSet, PointArray};
+use carom_record::{Block, Cell, CellArray, CellMaterials, FieldSet, LARGEST_VON_MISES, PointArray};
 use carom_solid::{Element, Mesh};
 
 /// Fields of a state.
@@ -42,9 +42,13 @@ pub(super) fn field_set(case: &Case, model: &Model, surfaces: &Surfaces, state: 
             array("principal_log_strain", "", 3, principal_strain),
             array("contact_pressure", &label.stress, 1, pressures(surfaces, model, state)),
         ],
+        of_cells: Vec::new(),
         materials: materials(case, model),
     };
     if case.yielding().next().is_some() {
+        let name = LARGEST_VON_MISES.to_owned();
+        let values = largest_von_mises(model, state);
+        set.of_cells.push(CellArray { name, unit: label.stress.clone(), values });
         set.arrays.push(array("plastic_strain", "", 1, plastic));
         set.arrays.push(array("yielded", "", 1, yielded));
     }
@@ -67,6 +71,7 @@ pub fn initial_fields(case: &Case, model: &Model) -> FieldSet {
         points: in_space(model, &model.reference).collect(),
         blocks: blocks(model),
         arrays: vec![PointArray { name: "displacement".into(), unit, components: 3, values }],
+        of_cells: Vec::new(),
         materials: materials(case, model),
     }
 }
@@ -178,6 +183,22 @@ fn nodal_means(model: &Model, state: &State) -> Means {
     }
     let [stress, strain] = means;
     Means { stress, strain, plastic, yielded }
+}
+
+/// Largest von Mises stress of each cell at its quadrature points, where yielding is decided; NaN
+/// where J ≤ 0.
+fn largest_von_mises(model: &Model, state: &State) -> Vec<f64> {
+    let mut values = Vec::new();
+    for (k, part) in model.parts.iter().enumerate().filter(|(_, part)| !part.is_rigid()) {
+        let past = past_of(&model.parts, k, state.materials.past(0.0).memory);
+        let y = part.of(&state.y);
+        let largest = |cell: usize| {
+            let points = part.body.quadrature_points(cell, y, &past).ok()?;
+            points.iter().map(|point| von_mises(&point.cauchy)).reduce(f64::max)
+        };
+        values.extend((0..part.body.mesh().cell_count()).map(|cell| largest(cell).unwrap_or(f64::NAN)));
+    }
+    values
 }
 
 fn pressures(surfaces: &Surfaces, model: &Model, state: &State) -> Vec<f64> {

@@ -14,6 +14,7 @@ use super::outcome::{End, Outcome, Progress, RunError};
 use super::session::Session;
 use super::tally::{Tally, checkpoint, from_checkpoint};
 use super::verdicts::judge;
+use crate::build::axes_across;
 use crate::setup::Setup;
 use crate::thread_count::ThreadCount;
 use crate::warnings::warnings;
@@ -68,6 +69,11 @@ fn started(
     let version = env!("CARGO_PKG_VERSION");
     let threads = simulation.model().threads.count();
     let mut manifest = Manifest::new(version, case.facts(), resolved, source, history_columns(case), threads);
+    // A case does not know its meshes.
+    let across = manifest.facts.held.iter_mut().filter(|held| held.axis.is_none());
+    for (held, axis) in across.zip(axes_across(case, simulation.model())) {
+        held.axis = axis;
+    }
     manifest.sides = sides(simulation.model());
     manifest.surfaces = surfaces(case);
     manifest.warnings = warnings(case, simulation.model());

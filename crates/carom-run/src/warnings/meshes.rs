@@ -148,20 +148,29 @@ pub(super) fn coarse_secondary(case: &Case, model: &Model) -> Vec<Found> {
             let what = format!(
                 "near the contact the nodes of the secondary side are {secondary} {unit} apart, those of the primary {primary} {unit}"
             );
-            Found::of_contact(&case.contacts[k].name, what)
+            let contact = &case.contacts[k];
+            let found = Found::of_contact(&contact.name, what);
+            if contact.between { found.with_advice(finer_or_apart(contact)) } else { found }
         })
     };
     (0..case.contacts.len()).filter_map(coarse).collect()
+}
+
+/// Advice for a contact of `between`, of which the softer body is the secondary one.
+fn finer_or_apart(contact: &ContactSpec) -> String {
+    let body = |side: &str| side.split('.').next().unwrap_or_default().to_owned();
+    let [secondary, primary] = [&*contact.secondary, contact.primary.side().unwrap_or_default()].map(body);
+    format!(
+        "a finer mesh of {secondary} there; or a [[contact]] of its own for the two bodies, secondary = \"{primary}.SIDE\" and \
+         primary = \"{secondary}.SIDE\", which `between` then leaves out"
+    )
 }
 
 /// Given where the case asks for a pressure, in an expectation, or for a stress near the contact,
 /// at a probe within a facet's length of it. Bodies of which one is curved never match: a warning
 /// to every one of them would not be read.
 pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
-    let stress = |q: &Quantity| {
-        use Quantity::{SigmaXx, SigmaXy, SigmaXz, SigmaYy, SigmaYz, SigmaZz, VonMises};
-        matches!(q, SigmaXx | SigmaYy | SigmaZz | SigmaXy | SigmaYz | SigmaXz | VonMises)
-    };
+    let stress = |q: &Quantity| q.is_stress();
     let unmatched = |(k, contact): (usize, &ContactSpec)| {
         if contact.method == Method::Mortar {
             return None;

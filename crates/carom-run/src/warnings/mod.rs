@@ -51,7 +51,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 25] = [
+pub const WARNINGS: [Entry; 27] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -158,6 +158,12 @@ pub const WARNINGS: [Entry; 25] = [
         rule: Rule::Record(record::one_node),
     },
     Entry {
+        id: "open-contact",
+        why: "the bodies did not meet on its sides before the end, or not where these are",
+        advice: "a later end, or sides that meet; nothing where the contact is a precaution",
+        rule: Rule::Record(record::open_contact),
+    },
+    Entry {
         id: "undeclared-contact",
         why: "nothing keeps them apart: contact acts only between the sides that a [[contact]] names",
         advice: "a [[contact]] that names the sides that meet, or one with between = \"all\"; or ending the run before they meet",
@@ -200,6 +206,14 @@ pub const WARNINGS: [Entry; 25] = [
               and its contact is inelastic",
         advice: "a shorter step, a finer mesh at the contact or a scheme with more damping; `log.jsonl` has the reason of each step",
         rule: Rule::Record(record::fallback_steps),
+    },
+    Entry {
+        id: "numerical-dissipation",
+        why: "elastic bodies keep this energy: vibrations and rebounds become smaller by the scheme and its step, not by the \
+            material",
+        advice: "a shorter step, or a scheme that takes less, as a larger rho_inf or energy-momentum; nothing where \
+                 vibrations are meant to die out",
+        rule: Rule::Record(record::numerical_dissipation),
     },
     Entry {
         id: "energy-created",

@@ -52,6 +52,32 @@ pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     found
 }
 
+/// Most contacts that one warning names.
+const NAMED: usize = 4;
+/// Share of the energy scale that the integrator may dissipate without a warning.
+const MUCH_DISSIPATED: f64 = 0.1;
+
+/// Contacts in which no node was ever active: of those of one table of the case, none.
+pub(super) fn open_contact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let has_closed = run.column("activations").is_some_and(|column| column.iter().any(|count| *count > 0.0));
+    // Between rows another contact may have closed.
+    if has_closed && case.output.history_every > 1 {
+        return Vec::new();
+    }
+    let closed: BTreeSet<&str> = run.contact.iter().map(|row| row.contact.as_ref()).collect();
+    let mut tables: BTreeMap<usize, Vec<&ContactSpec>> = BTreeMap::new();
+    case.contacts.iter().for_each(|contact| tables.entry(contact.entry).or_default().push(contact));
+    let open = tables.into_values().filter(|all| all.iter().all(|c| !closed.contains(c.name.as_str())));
+    let names: Vec<String> = open.map(|all| format!("\"{}\"", all[0].name)).collect();
+    let place = match &names[..] {
+        [] => return Vec::new(),
+        [one] => format!("contact {one}"),
+        [front @ .., last] if names.len() <= NAMED => format!("contacts {} and {last}", front.join(", ")),
+        _ => format!("contacts {} and {} others", names[..NAMED].join(", "), names.len() - NAMED),
+    };
+    vec![Found::at(place, "no node was in contact at any time".to_owned())]
+}
+
 /// Bodies between whose nodes an edge or a narrow sphere of a rigid obstacle lay.
 pub(super) fn edge_between_nodes(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let entered = events(run, "between-nodes").filter_map(|event| {
@@ -163,6 +189,18 @@ pub(super) fn fallback_steps(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
         1 => format!("the fallback took the grid step that begins at t = {time}"),
         _ => format!("the fallback took {count} grid steps, the first at t = {time}"),
     })
+}
+
+/// Energy that the time integrator took, but of backward Euler, which is chosen for that.
+pub(super) fn numerical_dissipation(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let scheme = &case.time.scheme;
+    let last = |name: &str| run.column(name)?.last().copied();
+    let share = last("dissipation").zip(last("energy_scale")).map_or(0.0, |(taken, scale)| taken / scale);
+    if scheme.is_static() || scheme.kind == "backward-euler" || share.is_nan() || share <= MUCH_DISSIPATED {
+        return Vec::new();
+    }
+    let what = format!("the time integrator took {} % of the energy scale by the end", short(100.0 * share));
+    vec![Found::of_the_run(what)]
 }
 
 /// More energy created than the default of `time.energy_guard` allows. Load steps create none: the

@@ -31,7 +31,7 @@ pub(super) fn long_step(case: &Case, model: &Model, run: &Run) -> Vec<Found> {
 }
 
 fn unresolved(case: &Case, model: &Model, run: &Run) -> Option<Found> {
-    let impact = Impact::first(run)?;
+    let impact = Impact::first(run).ok()?;
     let stopped = stopped(model, run, &impact)?;
     let (part, material) = softest(case, model, &impact)?;
     let across = extent::along(model, part, &impact.normal);

@@ -78,3 +78,23 @@ time = { end = 2.0, step = 0.1, scheme = { kind = "bathe", rho_inf = 0.0 } }
     assert!(fallback(&[]));
     assert!(!fallback(&["contact.joint.method=mortar"]));
 }
+
+/// A block is compressed until its cells are too short for the step. A finer mesh would need a
+/// shorter one still.
+#[test]
+fn explicit_steps_that_are_too_long() {
+    let pressed = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 }]
+body = [{ name = "block", material = "m", element = "Q4", mass = "lumped", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [4, 4] } }]
+support = [{ on = ["block.bottom"], fix = ["x", "y"] }]
+load = [{ on = ["block.top"], pressure = "0.5*t" }]
+time = { end = 8.0, step = 0.1, scheme = { kind = "central-difference" } }
+"#;
+    let said = advice(pressed, &[]);
+    assert_eq!(said[0], "a shorter step from the start");
+    assert!(
+        said.iter().all(|what| !what.contains("finer mesh") || what.contains("shorter by the same factor")),
+        "{said:?}"
+    );
+}

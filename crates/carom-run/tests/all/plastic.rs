@@ -1,6 +1,10 @@
 //! Runs of metal that yields: the ledger with every scheme, the same bits when resumed, bisected,
 //! on several threads and reduced, contact with friction, order in time.
 
+use std::sync::atomic::AtomicBool;
+
+use carom_record::{LARGEST_VON_MISES, Recorder, Source};
+use carom_run::recording::run_in_memory;
 use carom_run::{GridReport, Setup, Simulation};
 
 use super::common::{case, finish, momenta, on_threads, schemes, simulation};
@@ -225,4 +229,26 @@ fn yielding_bodies_are_tied_and_touch_by_mortar() {
             assert!((now - start).abs() < 1e-10, "{joint} {now} {start}");
         }
     }
+}
+
+/// No quadrature point has a stress beyond the yield surface: of the law in logarithmic strains
+/// that is Kirchhoff's, J times the recorded one. What is projected to the nodes has.
+#[test]
+fn largest_stress_is_within_the_yield_surface() {
+    let text = block("T6", FLOOR) + &timed("{ kind = \"bathe\", rho_inf = 0.5 }", 0.01, 0.3);
+    let stop = AtomicBool::new(false);
+    let (_, record) =
+        run_in_memory(&case(&text, &[""; 0]), Source::default(), 1, &mut |_| (), &stop).unwrap();
+    let run = record.read().unwrap();
+    let column = |name: &str| run.column(name).unwrap();
+    let mut beyond = 0;
+    for (entry, fields) in run.fields.iter().zip(&record.fields) {
+        let row = run.times().iter().position(|time| (time - entry.time).abs() < 1e-9).unwrap();
+        let bound = (0.5 + 5.0 * column("block.plastic_strain")[row]) / column("min_det_f")[row];
+        let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let at_points = largest(&fields.of_cells(LARGEST_VON_MISES).unwrap().values);
+        assert!(at_points <= bound * (1.0 + 1e-9), "{at_points} {bound} at {}", entry.time);
+        beyond += usize::from(largest(&fields.array("von_mises").unwrap().values) > 1.05 * bound);
+    }
+    assert!(beyond > 0);
 }

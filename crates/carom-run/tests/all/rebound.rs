@@ -78,6 +78,8 @@ fn the_same_in_every_frame() {
     let moving = of(BARS, &["body.short.velocity=[-0.02]", "body.long.velocity=[-0.03]"]);
     assert!((moving - free).abs() < 1e-9, "{moving} {free}");
     let fixed = of(BARS, &[&held("fix = [\"x\"]"), end]);
+    let across = of(BARS, &[&held("fix = [\"normal\"]"), end]);
+    assert_eq!(across, fixed);
     let motion = held("move = { x = \"-0.03*t\" }");
     let moving = of(BARS, &[&motion, end, "body.short.velocity=[-0.02]", "body.long.velocity=[-0.03]"]);
     assert!((moving - fixed).abs() < 1e-9, "{moving} {fixed}");

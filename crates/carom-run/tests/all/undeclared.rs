@@ -78,6 +78,11 @@ fn findings(sets: &[&str]) -> Vec<String> {
     found(FAR_SIDES, sets).into_iter().map(|(_, what)| what).collect()
 }
 
+/// The warnings after a run, but that the long step takes energy.
+fn of_contact(sets: &[&str]) -> Vec<String> {
+    recorded(FAR_SIDES, sets).into_iter().filter(|id| id != "numerical-dissipation").collect()
+}
+
 #[test]
 fn bodies_that_meet_where_their_contact_does_not_act() {
     // They are 0.01 apart; such a node is seen a tenth of a facet, 2.5e-3, deep at t = 0.0125.
@@ -86,16 +91,16 @@ fn bodies_that_meet_where_their_contact_does_not_act() {
     let (time, elsewhere) = rest.unwrap().split_once(", elsewhere than where ").unwrap();
     assert!((0.0125..0.0135).contains(&time.parse().unwrap()), "{what}");
     assert_eq!(elsewhere, "\"c\" acts between a.left and b.right");
-    // Before the run, and after it.
-    assert_eq!(recorded(FAR_SIDES, &[]), ["undeclared-contact"; 2]);
+    // Before the run, and after it, when the contact has not closed.
+    assert_eq!(of_contact(&[]), ["undeclared-contact", "open-contact", "undeclared-contact"]);
     // The sides that meet, in either order, or all of them.
     let right = ["contact.c.secondary=a.right", "contact.c.primary=b.left"];
     let swapped = ["contact.c.secondary=b.left", "contact.c.primary=a.right"];
     for sets in [right, swapped, ["contact.c.secondary=a.skin", "contact.c.primary=b.skin"]] {
-        assert!(recorded(FAR_SIDES, &sets).is_empty(), "{sets:?}");
+        assert!(of_contact(&sets).is_empty(), "{sets:?}");
     }
     // Faster, the far sides meet each other's bodies, and the run stops there.
-    assert_eq!(recorded(FAR_SIDES, &["body.b.velocity=[-3.0, 0.0]"]), ["undeclared-contact"; 2]);
+    assert_eq!(of_contact(&["body.b.velocity=[-3.0, 0.0]"]), ["undeclared-contact"; 2]);
 }
 
 #[test]
@@ -108,13 +113,13 @@ fn a_body_that_falls_into_an_obstacle_beside_the_side_of_its_contact() {
             "body.b.velocity=[0.0, -1.0]",
             "time.end=0.04",
         ];
-        (findings(&sets), recorded(FAR_SIDES, &sets))
+        (findings(&sets), of_contact(&sets))
     };
     let (before, after) = floor("top");
     let [what] = &before[..] else { panic!("{before:?}") };
     let start = "body \"b\": as it moves at the start, it meets the obstacle of contact \"c\" at t = 0.0";
     assert!(what.starts_with(start) && what.ends_with("\"c\" acts on b.top"), "{what}");
-    assert_eq!(after, ["undeclared-contact"; 2]);
+    assert_eq!(after, ["undeclared-contact", "open-contact", "undeclared-contact"]);
     assert_eq!(floor("bottom"), (Vec::new(), Vec::new()));
     // A side that reaches the floor with its corners.
     assert_eq!(floor("left").0, Vec::<String>::new());

@@ -8,7 +8,7 @@ use carom_record::{Manifest, Source, Warning};
 use carom_run::recording::run;
 use carom_run::{GridReport, Setup, WARNINGS, warnings};
 
-use super::common::{DISCS, case, finish, simulation};
+use super::common::{BAR, DISCS, case, finish, simulation};
 
 const IMPACT: &str = include_str!("../../../../cases/impact/impact.toml");
 
@@ -147,6 +147,16 @@ fn a_secondary_side_coarser_than_the_primary() {
     assert_eq!(id, "coarse-secondary");
     assert!(what.contains("contact \"strike\"") && what.contains("those of the primary 0.0104"), "{what}");
     assert!(!ids(IMPACT, &[]).contains(&id));
+    // Of a contact of `between` nobody chooses the sides: the first of two equal bodies is
+    // secondary.
+    let all = DISCS.replace("secondary = \"left.arc\"\nprimary = \"right.arc\"", "between = \"all\"");
+    let model = Setup::new(&case(&all, &["body.right.mesh.size=0.1"])).build().unwrap();
+    let given = warnings(&case(&all, &["body.right.mesh.size=0.1"]), &model);
+    let advice = &given.iter().find(|warning| warning.id == "coarse-secondary").unwrap().advice;
+    assert!(
+        advice.contains("a finer mesh of left") && advice.contains("secondary = \"right.SIDE\""),
+        "{advice}"
+    );
     // Quadratic facets of the same length have nodes further apart.
     assert!(ids(IMPACT, &["body.cylinder.element=T3"]).contains(&id));
 }
@@ -329,6 +339,16 @@ fn one_node_that_carries_a_contact() {
     assert!(!recorded(DISCS, &["time.end=0.2"]).contains(&id));
 }
 
+/// Discs that end before they meet, and contacts of one table of which one closes.
+#[test]
+fn contacts_that_never_close() {
+    let id = "open-contact".to_owned();
+    assert!(recorded(DISCS, &["time.end=0.002"]).contains(&id));
+    assert!(!recorded(DISCS, &["time.end=0.2"]).contains(&id));
+    let all = DISCS.replace("secondary = \"left.arc\"\nprimary = \"right.arc\"", "between = \"all\"");
+    assert!(!recorded(&all, &["time.end=0.2"]).contains(&id));
+}
+
 /// Against the strain of the run: with u = 0.012 at E = 1000 the bar has its free length.
 #[test]
 fn bars_that_cannot_widen() {
@@ -435,6 +455,17 @@ scheme = { kind = "static" }
 #[test]
 fn energy_that_load_steps_do_not_create() {
     assert!(recorded(PULLED, &[]).is_empty());
+}
+
+/// Waves in a bar that the step does not resolve: backward Euler and Hu's scheme take them, a
+/// scheme that keeps energy does not.
+#[test]
+fn energy_that_the_integrator_takes() {
+    let id = "numerical-dissipation".to_owned();
+    let of = |scheme: &str| recorded(BAR, &[&format!("time.scheme={scheme}")]).contains(&id);
+    assert!(of("{ kind = \"wbz\", rho_inf = 0.0 }"));
+    assert!(!of("{ kind = \"energy-momentum\" }"));
+    assert!(!of("{ kind = \"backward-euler\" }"));
 }
 
 #[test]

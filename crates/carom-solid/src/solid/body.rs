@@ -170,6 +170,15 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         points.map(|memory| law.plastic_strain_of(memory)).fold(0.0, f64::max)
     }
 
+    fn quadrature_points(&self, cell: usize, y: &[f64], past: &Past) -> Result<Vec<PointState>, Inverted> {
+        let law = &*self.medium(cell).law;
+        if law.memory() > 0 && !past.memory.is_empty() {
+            return Ok(self.projection(law, cell, y, past)?.states);
+        }
+        let points = &self.force_rules[usize::from(self.curved[cell])].points;
+        points.iter().map(|point| self.point_of(law, cell, &point.0, y, &Past::default())).collect()
+    }
+
     fn cell_lost_between(&self, cell: usize, before: &[f64], now: &[f64]) -> Option<f64> {
         if self.may_invert(cell) {
             return None;

@@ -13,7 +13,7 @@ use crate::shape::Shape;
 
 /// States at the quadrature points of a cell, with what each remembers.
 pub(super) struct Projection<'a> {
-    states: Vec<PointState>,
+    pub(super) states: Vec<PointState>,
     past: Past<'a>,
 }
 

@@ -93,7 +93,7 @@ const TABLE: &[(&str, &[Remedy])] = &[
     ),
     ("jump", &[(None, "a `move` that starts at the positions of its nodes")]),
     ("penetration", &[INERTIA, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER, ROUNDED, STIFFER, SHORTER]),
-    ("unstable-step", &[SHORTER, BATHE, FINER]),
+    ("unstable-step", &[SHORTER, BATHE]),
     ("not-finite", &[INERTIA, SHORTER, BATHE, FALLBACK, FINER]),
     (GUARD, &[PROJECT, BATHE, DAMPED, LONGER, SOFTER, FALLBACK, FINER, SHORTER, GUARD_OFF]),
 ];
@@ -108,10 +108,15 @@ pub(in crate::recording) fn advice(
     place: Option<&StopPlace>,
 ) -> Vec<Advice> {
     let remedies = TABLE.iter().find(|(of, _)| *of == kind).map_or(OTHERWISE, |(_, remedies)| remedies);
+    let mut remedies: Vec<&Remedy> = remedies.iter().collect();
+    if case.time.scheme.is_explicit() {
+        // What a step does that is too long ends in any of these ways.
+        remedies.sort_by_key(|remedy| **remedy != SHORTER);
+    }
     let original = Original::new(case, source);
     let contact = place.and_then(|place| place.contact.as_deref());
     let there = There::new(&original, case, place);
-    let advice = |&(change, what): &Remedy| {
+    let advice = |&&(change, what): &&Remedy| {
         let what = there.words(what)?;
         let sets = match change {
             Some(kind) => {
@@ -174,8 +179,13 @@ impl<'a> There<'a> {
             let refines =
                 self.bodies.iter().any(|body| matches!(body.mesh.source(), MeshSpec::Polygon { .. }));
             let how = if refines { " (`refine` of the polygon)" } else { "" };
+            let stable = if self.case.time.scheme.is_explicit() {
+                ", with a step that is shorter by the same factor"
+            } else {
+                ""
+            };
             let less = if self.case.loads.is_empty() { "" } else { ", or a smaller load" };
-            return more(&format!("{how}{less}"));
+            return more(&format!("{how}{stable}{less}"));
         }
         if what == DEGREE.1 {
             let lower = self.lower_elements()?;

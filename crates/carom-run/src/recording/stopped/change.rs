@@ -51,7 +51,7 @@ pub(super) struct Original<'a> {
 impl<'a> Original<'a> {
     pub(super) fn new(case: &'a Case, source: &'a Source) -> Self {
         let document = document(source, &[]);
-        let same = document.as_ref().and_then(|document| read(document).ok()).as_ref() == Some(case);
+        let same = document.as_ref().and_then(|document| titled(document, case)).as_ref() == Some(case);
         let tables = document.map_or_else(Vec::new, |document| document.names("contact"));
         Self { case, source: same.then_some(source), tables }
     }
@@ -59,7 +59,7 @@ impl<'a> Original<'a> {
     /// These options if the case can be read and built with them, and none otherwise: a key that is
     /// given may contradict them.
     pub(super) fn accepted(&self, sets: Vec<String>) -> Vec<String> {
-        let changed = self.source.and_then(|source| read(&document(source, &sets)?).ok());
+        let changed = self.source.and_then(|source| titled(&document(source, &sets)?, self.case));
         let accepted = changed.filter(|case| case != self.case && Setup::new(case).build().is_ok());
         accepted.map_or_else(Vec::new, |_| sets)
     }
@@ -182,6 +182,12 @@ fn plain(contact: &ContactSpec) -> bool {
 pub(super) fn quoted(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.chars().all(bare) { name.to_owned() } else { format!("{name:?}") }
+}
+
+/// The case of a document with the title of another one: without one in the text, a case has the
+/// name of its file.
+fn titled(document: &Document, like: &Case) -> Option<Case> {
+    Some(Case { title: like.title.clone(), ..read(document).ok()? })
 }
 
 /// The text of a case with further options, as read from a file of its folder.

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use carom::case::{Case, ProbeSpec};
 use carom::recording::{self, End};
 use carom_record::metrics::{self, Metric};
-use carom_record::{Advice, Expectation, Manifest, Run, Stop};
+use carom_record::{Advice, Expectation, Manifest, Run, Sizes, Stop};
 use serde::Serialize;
 
 use crate::exit::Failure;
@@ -52,6 +53,9 @@ pub(crate) struct Outcome {
     pub(crate) report: Option<PathBuf>,
     /// Remarks for the summary.
     pub(crate) remarks: Vec<String>,
+    /// What values are compared with to tell round-off.
+    #[serde(skip)]
+    pub(crate) sizes: Option<Sizes>,
 }
 
 /// Metrics as an object: names with values.
@@ -122,16 +126,30 @@ pub(crate) fn conclude(
         extremes: extremes(&run),
         profile: if options.profile { profile(&run.manifest) } else { Vec::new() },
         report,
-        remarks: done.remarks,
+        remarks: done.remarks.into_iter().chain(projected(&run)).collect(),
+        sizes: Some(Sizes::of(&run)),
         directory: done.directory,
         expectations: run.manifest.expectations,
     })
 }
 
+/// A remark on stresses of probes in bodies that yield.
+fn projected(run: &Run) -> Option<String> {
+    let case = Case::from_json(run.manifest.case.clone()).ok()?;
+    let yielding: Vec<&str> = case.yielding().map(|body| case.bodies[body].name.as_str()).collect();
+    let is_projected =
+        |probe: &&ProbeSpec| yielding.contains(&&*probe.body) && probe.record.iter().any(|of| of.is_stress());
+    let names: Vec<&str> = case.probes.iter().filter(is_projected).map(|probe| probe.name.as_str()).collect();
+    let words =
+        "where bodies yield, they are projected from the quadrature points and may exceed the yield stress";
+    (!names.is_empty()).then(|| format!("stresses of {}: {words}", names.join(", ")))
+}
+
 fn shown(run: &Run) -> Vec<Metric> {
     let all = metrics::of_run(run);
     let metric = |name: &&str| all.iter().find(|metric| metric.name == **name && metric.value.is_some());
-    SHOWN.iter().filter_map(metric).cloned().collect()
+    let has_contact = !run.manifest.facts.contacts.is_empty();
+    SHOWN.iter().filter(|name| has_contact || **name != "penetration").filter_map(metric).cloned().collect()
 }
 
 /// Wall seconds by phase in the order of a step, then their total and the processor time.
@@ -173,8 +191,10 @@ fn extremes(run: &Run) -> Vec<Extreme> {
     let of_probes = metrics::probe_columns(run).into_iter().filter_map(|column| Extreme::of(run, column));
     let columns = run.manifest.columns.iter().filter(|column| column.name.contains(".reaction_"));
     let mut reactions: Vec<Extreme> = columns.filter_map(|column| Extreme::of(run, &column.name)).collect();
-    reactions.retain(|extreme| extreme.size() > 0.0);
     reactions.sort_by(|a, b| b.size().total_cmp(&a.size()));
+    // A component across the others is round-off of the solution.
+    let least = 1e-9 * reactions.first().map_or(0.0, Extreme::size);
+    reactions.retain(|extreme| extreme.size() > least);
     reactions.truncate(REACTIONS);
     of_probes.chain(reactions).collect()
 }

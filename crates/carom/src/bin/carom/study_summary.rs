@@ -18,6 +18,9 @@ use crate::{console, out, table};
 const SHOWN: [&str; 6] =
     ["contact_duration", "impulse_y", "restitution", "energy_lost", "newton_iterations", "wall_time"];
 
+/// Share of the energy up to which it is round-off.
+const ROUND_OFF: f64 = 1e-12;
+
 /// Rebuilds tables, figures and page of a study, and the pages of its arms.
 pub(crate) fn report(directory: &Path) -> Result<ReportSummary, Failure> {
     let manifest = StudyManifest::read(directory)?;
@@ -61,6 +64,13 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool) -> Result<(
 
 fn text(study: &Study) -> String {
     let mut lines = metrics(study);
+    lines.extend(study.manifest.off_budget().map(|arm| {
+        let share = arm
+            .role
+            .cost
+            .map_or_else(|| "an unknown part of".to_owned(), |share| format!("{share:.2} times"));
+        format!("not at equal cost: {} took {share} its budget", arm.name)
+    }));
     lines.extend(study.verdicts.iter().map(claim));
     let arms = study.rows.iter().flat_map(|row| row.expectations.iter().map(move |e| (Some(&row.name), e)));
     for (arm, e) in arms.chain(study.expectations.iter().map(|e| (None, e))) {
@@ -80,15 +90,17 @@ fn metrics(study: &Study) -> Vec<String> {
     let has = |name: &str| study.rows.iter().any(|row| row.value(name).is_some());
     let impulse = if has("impulse_y") || !has("impulse_x") { "impulse_y" } else { "impulse_x" };
     let columns = SHOWN.map(|name| if name == "impulse_y" { impulse } else { name });
+    let columns: Vec<&str> = columns.into_iter().filter(|name| has(name)).collect();
     let head = |name: &str| match study.rows.iter().find_map(|row| unit(row, name)) {
         Some(unit) => format!("{name} [{unit}]"),
         None => name.to_owned(),
     };
-    let mut rows = vec![std::iter::once(String::new()).chain(columns.map(head)).collect::<Vec<_>>()];
+    let mut rows =
+        vec![std::iter::once(String::new()).chain(columns.iter().map(|name| head(name))).collect::<Vec<_>>()];
     for (arm, row) in study.rows.iter().enumerate() {
         let reason = || row.reason.as_deref().unwrap_or("?");
         let cells = match row.status {
-            Some(Status::Finished) => columns.map(|name| short_or_dash(row.value(name))).to_vec(),
+            Some(Status::Finished) => columns.iter().map(|name| cell(row, name)).collect(),
             Some(Status::Failed) => {
                 let alike =
                     study.finished_alike(arm).map_or_else(String::new, |others| format!(" ({others})"));
@@ -100,7 +112,7 @@ fn metrics(study: &Study) -> Vec<String> {
         };
         rows.push(std::iter::once(row.name.clone()).chain(cells).collect());
     }
-    table::lines(&rows, &[1, 2, 3, 4, 5, 6])
+    table::lines(&rows, &(1..=columns.len()).collect::<Vec<_>>())
 }
 
 fn claim(v: &Verdict) -> String {
@@ -119,6 +131,15 @@ fn claim(v: &Verdict) -> String {
     );
     let [left, right] = [v.left, v.right].map(short_or_dash);
     format!("{word}  {}  ({left} against {right}{ratio})", v.claim.text)
+}
+
+/// A metric of an arm. A share far below one is round-off.
+fn cell(row: &Row, name: &str) -> String {
+    let is_zero = |x: f64| x != 0.0 && x.abs() < ROUND_OFF && unit(row, name).is_none();
+    match row.value(name) {
+        Some(x) if is_zero(x) => "≈ 0".to_owned(),
+        value => short_or_dash(value),
+    }
 }
 
 /// The unit of a metric; none if it is a number alone.

@@ -60,13 +60,16 @@ fn text(outcome: &Outcome) -> String {
         wall => format!(" in {} of wall time", duration(wall)),
     };
     let first = format!("{} steps to t = {}{wall}", outcome.steps, time(outcome.time));
-    let metrics = outcome
-        .metrics
-        .iter()
-        .filter_map(|metric| Some(vec![metric.name.to_string(), short(metric.value?), metric.unit.clone()]));
+    let shown = |x: f64, unit: &str| {
+        let is_zero = outcome.sizes.as_ref().is_some_and(|sizes| sizes.is_round_off(x, unit));
+        if is_zero { "≈ 0".to_owned() } else { short(x) }
+    };
+    let metrics = outcome.metrics.iter().filter_map(|metric| {
+        Some(vec![metric.name.to_string(), shown(metric.value?, &metric.unit), metric.unit.clone()])
+    });
     let extremes = outcome.extremes.iter().map(|e| {
         let at = |t| format!("{} at {}", e.unit, time(t)).trim_start().to_owned();
-        let [min, max] = [short(e.min), short(e.max)];
+        let [min, max] = [shown(e.min, &e.unit), shown(e.max, &e.unit)];
         let [min_at, max_at] = [at(e.min_time), at(e.max_time)];
         vec![e.column.clone(), "min".to_owned(), min, min_at, "max".to_owned(), max, max_at]
     });
@@ -135,6 +138,7 @@ mod tests {
             profile: Vec::new(),
             report: Some("runs/impact-2/report.html".into()),
             remarks: Vec::new(),
+            sizes: None,
         };
         let summary = text(&outcome);
         assert_eq!(

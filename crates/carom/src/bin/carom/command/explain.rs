@@ -1,9 +1,10 @@
-//! `carom explain`: properties of time integrators, and the meaning of keys, metrics and warnings.
+//! `carom explain`: properties of time integrators, and the meaning of keys, columns, metrics and
+//! warnings.
 
 use std::fmt::Display;
 
 use carom::WARNINGS;
-use carom::case::{ExplainedKey, read_scheme};
+use carom::case::{ExplainedColumn, ExplainedKey, every_column, explained_columns, read_scheme};
 use carom::record::metrics::{self, Explanation};
 use serde::Serialize;
 
@@ -12,7 +13,8 @@ use crate::out;
 
 /// Print order, spectral radius, damping and period error of a time integrator, and its parameters
 /// in every convention of the literature; or meaning, values and default of a key of case and study
-/// files, the definition of a metric, or the reason of a warning
+/// files, that of a column of history.csv and contact.csv, the definition of a metric, or the
+/// reason of a warning
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -25,12 +27,15 @@ Examples:
   carom explain contact.enforcement
   carom explain hencky
   carom explain energy_lost
+  carom explain contact_force_y
+  carom explain ball.center_x
   carom explain flat-cell
   carom explain rho_inf")]
 pub(crate) struct Arguments {
     /// Kind of scheme, as in a case file, a key with or without its table, a word that is a value
-    /// of keys, a metric, or the name of a warning; without it, all kinds of schemes are listed
-    #[arg(value_name = "SCHEME, KEY, METRIC or WARNING")]
+    /// of keys, a column, a metric, or the name of a warning; without it, all kinds of schemes are
+    /// listed
+    #[arg(value_name = "SCHEME, KEY, COLUMN, METRIC or WARNING")]
     what: Option<String>,
     /// Parameters of the scheme
     #[arg(value_name = "KEY=VALUE")]
@@ -49,10 +54,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let explained = Explained::of(what);
         if explained.is_empty() {
             let metrics = metrics::explained().map(|metric| metric.name);
-            let words: Vec<&str> =
-                kinds.into_iter().chain(metrics).chain(WARNINGS.iter().map(|entry| entry.id)).collect();
+            let columns = every_column();
+            let columns = columns.iter().flat_map(|column| &column.names).map(String::as_str);
+            let warnings = WARNINGS.iter().map(|entry| entry.id);
+            let words: Vec<&str> = kinds.into_iter().chain(metrics).chain(warnings).chain(columns).collect();
             return Err(Failure::argument(
-                format!("there is no scheme, key, metric or warning `{what}`"),
+                format!("there is no scheme, key, column, metric or warning `{what}`"),
                 carom_study::similar_key(what, &words),
             ));
         }
@@ -69,10 +76,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     print(&scheme.explain(), arguments.json)
 }
 
-/// Keys, a metric and a warning with the same name.
+/// Keys, columns, a metric and a warning with the same name.
 #[derive(Serialize)]
 struct Explained {
     keys: Vec<ExplainedKey>,
+    columns: Vec<ExplainedColumn>,
     metric: Option<Explanation>,
     warning: Option<Warning>,
 }
@@ -92,19 +100,21 @@ impl Explained {
         let warning = WARNINGS.iter().find(|entry| entry.id == word);
         Self {
             keys: carom_study::explained(word),
+            columns: explained_columns(word),
             metric: metrics::explained().find(is_named),
             warning: warning.map(|entry| Warning { id: entry.id, why: entry.why, advice: entry.advice }),
         }
     }
 
     fn is_empty(&self) -> bool {
-        self.keys.is_empty() && self.metric.is_none() && self.warning.is_none()
+        self.keys.is_empty() && self.columns.is_empty() && self.metric.is_none() && self.warning.is_none()
     }
 }
 
 impl Display for Explained {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut parts: Vec<String> = self.keys.iter().map(ToString::to_string).collect();
+        parts.extend(self.columns.iter().map(ToString::to_string));
         if let Some(Explanation { name, meaning, formula, unit }) = &self.metric {
             parts.push(format!("{name}   metric\n  {meaning}\n\nformula\n  {formula}\n\nunit\n  {unit}"));
         }
