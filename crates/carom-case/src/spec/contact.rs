@@ -55,9 +55,10 @@ pub struct ContactSpec {
     /// Enforcement of the constraint.
     #[key(default = "\"multiplier\"")]
     pub enforcement: Enforcement,
-    /// Stiffness of the springs: of a penalty, as a multiple of the reference stiffness of the
-    /// secondary node; of an augmented Lagrangian, of the diagonal of the step's tangent at the
-    /// node, which changes the number of rounds; far too soft springs may bisect a step.
+    /// Stiffness of the springs: of a penalty, as a multiple of the mean diagonal entry of the
+    /// tangent in the reference configuration at the secondary node; of an augmented Lagrangian, of
+    /// the diagonal of the step's tangent at the node, which changes the number of rounds; far too
+    /// soft springs may bisect a step.
     #[key(Number(POSITIVE), default = "10.0")]
     pub stiffness: f64,
     /// What contact constrains. Default: the law of the scheme.

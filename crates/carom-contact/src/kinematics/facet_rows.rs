@@ -1,5 +1,5 @@
-//! Rows of secondary nodes over facets in the plane, which `joint.rs` joins at joints: gap, slip and
-//! their derivatives (`gap.rs`), at the closest point of a pair's facet or at a frozen one.
+//! Rows of secondary nodes over facets in the plane, which `joint.rs` joins at joints: gap, slip
+//! and their derivatives (`gap.rs`), at the closest point of a pair's facet or at a frozen one.
 
 use super::facets::Facets;
 use super::facing::REACH;

@@ -1,5 +1,5 @@
-//! A side in the plane against itself, in the two directions of `reversed.rs`: all nodes as those of
-//! the later place, with the facets that come before them, and as those of the earlier one, with
+//! A side in the plane against itself, in the two directions of `reversed.rs`: all nodes as those
+//! of the later place, with the facets that come before them, and as those of the earlier one, with
 //! the facets that come after them (`folds.rs`).
 
 use std::sync::Arc;

@@ -1,10 +1,10 @@
 //! Secondary nodes against a primary side of facets: curved ones of any order in the plane, a point
 //! at the end of a bar.
 //!
-//! Rows are in `facet_rows.rs`, the gap and its derivatives in `gap.rs`. ξ is that of the closest point, solved for in every
-//! call up to |ξ| = 1.2 beyond an end. With [`ContactPoint::Frozen`] it is that of the crossing of
-//! the paths in the first step of a pair, and of the closest point at the start of the step in the
-//! later ones; a step leaves it unchanged.
+//! Rows are in `facet_rows.rs`, the gap and its derivatives in `gap.rs`. ξ is that of the closest
+//! point, solved for in every call up to |ξ| = 1.2 beyond an end. With [`ContactPoint::Frozen`] it
+//! is that of the crossing of the paths in the first step of a pair, and of the closest point at
+//! the start of the step in the later ones; a step leaves it unchanged.
 //!
 //! Which facet a node faces, at joints and ends, is in `facing.rs`. A pair is handed to the
 //! neighbour only between solves.

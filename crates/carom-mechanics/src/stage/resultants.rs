@@ -57,6 +57,10 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation, noise: f64) 
             let moved = motion[node * d..(node + 1) * d].iter().map(|m| m * m).sum::<f64>().sqrt();
             for (axis, i) in (node * d..(node + 1) * d).enumerate() {
                 let u = rigid.at(place, axis);
+                if model.fixed[i] && u.abs() > SUMMED {
+                    // The body has deformed, and its supports do not leave this motion free.
+                    return true;
+                }
                 let terms = terms(model, &equations.stage, &now.forces, &equations.known, i);
                 sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += u * term);
                 let size = terms.iter().map(|term| term.abs()).sum::<f64>() + springs[i];

@@ -76,7 +76,8 @@ impl Bodies<'_> {
             return Box::new(both);
         }
         let ours = self.others(secondary, &of_secondary[0], primary, &corners(&opposite));
-        let [ours, theirs] = [ours, theirs].map(|nodes| bounded(spec, nodes));
+        let ours = bounded(spec, ours, self.depth_in(primary));
+        let theirs = bounded(spec, theirs, self.depth_in(secondary));
         let single =
             Combined::both(against(ours, &opposite, &side), against(theirs, &side, &opposite).reversed());
         Box::new(Combined::both(integrated(spec, Mortar::new(opposite, side, self.reference, both)), single))
@@ -144,7 +145,8 @@ impl Bodies<'_> {
         tips: Option<TipToFacet>,
     ) -> Box<dyn Kinematics> {
         let spec = &self.case.contacts[k];
-        let single = bounded(spec, self.others(side, &[], side, &surface.corners(self.reference)));
+        let single = self.others(side, &[], side, &surface.corners(self.reference));
+        let single = bounded(spec, single, self.depth_in(side));
         let single = obstacle.of_nodes(&single);
         let mortar = integrated(spec, Mortar::with_obstacle(surface, obstacle, self.reference));
         let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(mortar), Box::new(single)];
@@ -174,7 +176,7 @@ impl Bodies<'_> {
         if spec.method == case::Method::NodeToSegment {
             return both;
         }
-        let bounded = bounded(spec, with_depth);
+        let bounded = bounded(spec, with_depth, self.depth_in(side));
         let bounds = against([bounded.clone(), bounded]);
         let mortar = Mortar::of_itself(surface.clone(), &pieces, part.first_node, self.reference, both);
         Combined::both(integrated(spec, mortar), bounds)
@@ -206,13 +208,18 @@ impl Bodies<'_> {
     /// The nodes of a side, except those on sides of `earlier` contacts, each with the depth to
     /// which it may enter facets of another side: none at corners.
     fn others(&self, side: &Side, earlier: &[Side], other: &Side, corners: &[usize]) -> NodesWithDepth {
-        let lengths = lengths(&other.facets, self.reference, self.case.dimension);
-        let shortest = lengths.map(|(_, length)| length).fold(f64::INFINITY, f64::min);
+        let depth = self.depth_in(other);
         let mut nodes = without(&side.nodes, earlier);
         nodes.sort_unstable();
-        let allowed = |node| if corners.contains(node) { 0.0 } else { ALLOWED * shortest };
+        let allowed = |node| if corners.contains(node) { 0.0 } else { depth };
         let depths = nodes.iter().map(allowed).collect();
         NodesWithDepth { nodes, depths }
+    }
+
+    /// The depth to which smooth nodes may enter a side.
+    fn depth_in(&self, side: &Side) -> f64 {
+        let lengths = lengths(&side.facets, self.reference, self.case.dimension);
+        ALLOWED * lengths.map(|(_, length)| length).fold(f64::INFINITY, f64::min)
     }
 
     /// The sides of a body that other contacts have in the place of this one's, with the same
@@ -261,8 +268,7 @@ impl Bodies<'_> {
 /// single node: beside a kink of the other side one would enter far. Springs let in every node;
 /// with them only corners are kept out. Forces that are no multipliers would be shared between a
 /// corner and the coefficients around it: it is held where it is as deep as other nodes may be.
-fn bounded(spec: &ContactSpec, nodes: NodesWithDepth) -> NodesWithDepth {
-    let depth = nodes.depths.iter().copied().fold(0.0, f64::max);
+fn bounded(spec: &ContactSpec, nodes: NodesWithDepth, depth: f64) -> NodesWithDepth {
     match spec.enforcement {
         case::Enforcement::Multiplier => nodes,
         case::Enforcement::Augmented => nodes.with_at_least(depth),

@@ -87,7 +87,7 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         .collect();
     let normal = match spec.enforcement {
         Enforcement::Multiplier => Vec::new(),
-        _ => stiffnesses(kinematics.secondary(), parts),
+        _ => spread(&*kinematics, stiffnesses(kinematics.secondary(), parts)),
     };
     let rubbing = &kinematics.secondary()[..kinematics.rubbing()];
     let stick = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
@@ -232,6 +232,18 @@ fn friction(
         springs: Vec::new(),
         edges: 0,
     }))
+}
+
+/// The stiffness of the springs of a pressure field per area, the same for all its coefficients, so
+/// that a uniform pressure closes them alike; other springs as they are.
+fn spread(kinematics: &dyn Kinematics, mut stiffnesses: Vec<f64>) -> Vec<f64> {
+    let areas: Vec<Option<f64>> = (0..stiffnesses.len()).map(|place| kinematics.area(place)).collect();
+    let of_field = || stiffnesses.iter().zip(&areas).filter_map(|(of, area)| Some((of, (*area)?)));
+    let per_area = of_field().map(|(of, _)| of).sum::<f64>() / of_field().map(|(_, area)| area).sum::<f64>();
+    for (of, area) in stiffnesses.iter_mut().zip(&areas) {
+        *of = area.map_or(*of, |area| per_area * area);
+    }
+    stiffnesses
 }
 
 /// For each node the mean over the directions of its diagonal of the tangent in the reference
