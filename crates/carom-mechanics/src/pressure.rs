@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use carom_algebra::Vector;
-use carom_contact::{NodalPressure, Rows};
+use carom_contact::Rows;
 use carom_solid::{FacetFunctions, FacetShape};
 
 use crate::model::Model;
@@ -113,8 +113,14 @@ impl Surfaces {
         let mut pressures = self.of_forces(model, state);
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
             for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
-                // Forces of other contacts may act there, too.
-                *pressures.entry(of.node).or_default() += of.actual;
+                let pressure = pressures.entry(of.node).or_default();
+                if contact.itself {
+                    // The node at the tip of a fold belongs to both flanks.
+                    *pressure = pressure.max(of.actual);
+                } else {
+                    // Forces of other contacts may act there, too.
+                    *pressure += of.actual;
+                }
             }
         }
         pressures
@@ -228,10 +234,6 @@ impl Surfaces {
         let mut forces = vec![None; self.nodes.len()];
         let mut rows = Rows::new(model.dimension);
         for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-            // Near the tip of a fold a node belongs to both flanks.
-            let of_field = contact.kinematics.pressure_field(pairs, &state.y, self.thickness);
-            let is_pressed = |of: &&NodalPressure| contact.itself && of.actual > 0.0;
-            let pressed: BTreeSet<usize> = of_field.iter().filter(is_pressed).map(|of| of.node).collect();
             for pair in pairs.iter().filter(|pair| pair.active) {
                 rows.clear();
                 if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
@@ -244,7 +246,7 @@ impl Surfaces {
                 for (k, (&node, slope)) in
                     row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)).enumerate()
                 {
-                    if is_of_field && (k < row.own || pressed.contains(&node)) {
+                    if is_of_field && k < row.own {
                         // The pressure field gives the pressure of the secondary side.
                         continue;
                     }

@@ -266,12 +266,11 @@ impl Bodies<'_> {
 
 /// The nodes with a bound on their depth beside gaps that are zero on average, which keep out no
 /// single node: beside a kink of the other side one would enter far. Springs let in every node;
-/// with them only corners are kept out. Forces that are no multipliers would be shared between a
-/// corner and the coefficients around it: it is held where it is as deep as other nodes may be.
+/// with them only corners are kept out, from the depth on that other nodes may have: the force would
+/// be shared between a corner and the coefficients around it.
 fn bounded(spec: &ContactSpec, nodes: NodesWithDepth, depth: f64) -> NodesWithDepth {
     match spec.enforcement {
-        case::Enforcement::Multiplier => nodes,
-        case::Enforcement::Augmented => nodes.with_at_least(depth),
+        case::Enforcement::Multiplier | case::Enforcement::Augmented => nodes,
         case::Enforcement::Penalty => nodes.without_depth().with_at_least(depth),
     }
 }

@@ -481,3 +481,30 @@ fn a_half_model_rubs_with_explicit_and_impulse_schemes() {
         assert!(rubs > 10, "{scheme}: {rubs}");
     }
 }
+
+/// A support along x of a straight side leaves a rotation free to first order, until the side has
+/// moved. Its reactions then have a moment, and the forces without them none of their own.
+#[test]
+fn a_block_whose_support_leaves_a_rotation_to_first_order_is_pressed_on_a_rough_plane() {
+    let text = r#"
+        dimension = 2
+        plane = "strain"
+        material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.3 }]
+        support = [{ on = ["u.top"], fix = ["x"] }]
+        load = [{ on = ["u.top"], traction = ["0", "-1"] }]
+        time = { end = 1.0, step = 0.05, scheme = { kind = "backward-euler" } }
+        [[body]]
+        name = "u"
+        material = "m"
+        element = "T6"
+        mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [1, 1] }
+        [[contact]]
+        name = "c"
+        secondary = "u.bottom"
+        primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+        mu = 0.3
+    "#;
+    let force = finish(simulation(text, &[""; 0])).state().contact_forces[0][1];
+    // The load, once the block rests: backward Euler damps its vibration.
+    assert!((force.abs() - 1.0).abs() < 1e-3, "{force}");
+}

@@ -337,3 +337,62 @@ fn an_augmented_lagrangian_finds_the_same_pressures() {
         }
     }
 }
+
+/// A block of 1 × 0.5 that stands on a rigid plane, with its upper side moved; `keys`: of its
+/// contact.
+fn standing(element: &str, moved: &str, keys: &str) -> String {
+    format!(
+        r#"
+        dimension = 2
+        plane = "strain"
+        material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.0 }}]
+        support = [{{ name = "grip", on = ["b.top"], move = {moved} }}]
+        [[body]]
+        name = "b"
+        material = "m"
+        element = "{element}"
+        mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.5], cells = [4, 2] }}
+        [[contact]]
+        name = "floor"
+        secondary = "b.bottom"
+        primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+        method = "mortar"
+        {keys}
+        [time]
+        end = 2.0
+        step = 0.2
+        scheme = {{ kind = "static" }}
+        "#
+    )
+}
+
+/// With Poisson's ratio zero the block is in uniform compression: p is force over area, also of
+/// springs, at corners too.
+#[test]
+fn a_uniform_pressure_is_uniform_with_multipliers_and_springs() {
+    for element in ["Q4", "T6", "T10"] {
+        for enforcement in ["multiplier", "penalty"] {
+            let text = standing(
+                element,
+                r#"{ x = "0", y = "-0.002*t" }"#,
+                &format!("enforcement = \"{enforcement}\""),
+            );
+            let found = pressures(&case(&text, &[""; 0]));
+            let mean = found.iter().sum::<f64>() / found.len() as f64;
+            let spread = found.iter().map(|p| (p / mean - 1.0).abs()).fold(0.0, f64::max);
+            assert!(spread < 1e-8, "{element}, {enforcement}: {found:?}");
+        }
+    }
+}
+
+/// Where every point of the side slips, friction is the shear limit times the area, 1; of Q4 the
+/// corner behind carries its force alone, and leaves out its half facet.
+#[test]
+fn a_shear_limit_counts_every_area_once() {
+    for (element, slips) in [("Q4", 0.875), ("Q9", 1.0), ("T10", 1.0)] {
+        let moved = r#"{ x = "if(t < 1, 0, 0.1*(t - 1))", y = "-0.02*min(t, 1)" }"#;
+        let last = finish(simulation(&standing(element, moved, "mu = 1.0\nshear = 5.0"), &[""; 0]));
+        let force = last.state().contact_forces[0][0];
+        assert!((force.abs() - 5.0 * slips).abs() < 1e-8, "{element}: {force}");
+    }
+}
