@@ -266,8 +266,8 @@ impl Bodies<'_> {
 
 /// The nodes with a bound on their depth beside gaps that are zero on average, which keep out no
 /// single node: beside a kink of the other side one would enter far. Springs let in every node;
-/// with them only corners are kept out, from the depth on that other nodes may have: the force would
-/// be shared between a corner and the coefficients around it.
+/// with them only corners are kept out, from the depth on that other nodes may have: the force
+/// would be shared between a corner and the coefficients around it.
 fn bounded(spec: &ContactSpec, nodes: NodesWithDepth, depth: f64) -> NodesWithDepth {
     match spec.enforcement {
         case::Enforcement::Multiplier | case::Enforcement::Augmented => nodes,

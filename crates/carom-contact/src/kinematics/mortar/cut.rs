@@ -230,7 +230,7 @@ impl Opposites<'_> {
         let regions = self.regions.of_facets.iter().filter(may_face);
         match rule.quadrature {
             Quadrature::Segments => self.facing_in_parts(own, regions, &rule.points),
-            Quadrature::Fixed => self.facing_at_points(own, regions, &rule.points),
+            Quadrature::Fixed => self.facing_at_points(own, &regions, &rule.points),
         }
     }
 
@@ -302,7 +302,7 @@ impl Opposites<'_> {
     fn facing_at_points<'r>(
         &self,
         own: Facet,
-        regions: impl Iterator<Item = &'r (usize, Region)> + Clone,
+        regions: &(impl Iterator<Item = &'r (usize, Region)> + Clone),
         rule: &[[f64; 2]],
     ) -> Facing {
         let mut found = Facing::default();

@@ -33,7 +33,7 @@ pub(super) struct Primary {
     /// belongs to those.
     siblings: Vec<usize>,
     /// How the boundary folds, where the secondary side is this one.
-    pub(super) folds: Option<Folds>,
+    pub(super) folds: Option<Box<Folds>>,
 }
 
 /// Gap of a point of the secondary side, with its derivatives by the point and the nodes opposite.
@@ -46,7 +46,7 @@ pub(super) enum PointGap {
 }
 
 impl Primary {
-    pub(super) fn new(surface: Surface, folds: Option<Folds>) -> Self {
+    pub(super) fn new(surface: Surface, folds: Option<Box<Folds>>) -> Self {
         let order = along(&surface);
         let mut place = vec![0; surface.all()];
         order.iter().enumerate().for_each(|(at, &facet)| place[facet] = at);
@@ -146,7 +146,7 @@ impl Opposite {
     ) -> impl Fn(usize, Facet) -> Facing + 'a {
         let primary = match self {
             Self::Side(Primary { surface, folds, .. }) => {
-                Some(Opposites { surface, folds: folds.as_ref(), regions, y })
+                Some(Opposites { surface, folds: folds.as_deref(), regions, y })
             }
             Self::Obstacle(_) => None,
         };

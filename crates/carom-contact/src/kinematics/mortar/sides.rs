@@ -65,7 +65,7 @@ impl Mortar {
         reference: &[f64],
         sides: impl Kinematics + 'static,
     ) -> Self {
-        let folds = Folds::new(&side, piece, first_node, reference);
+        let folds = Box::new(Folds::new(&side, piece, first_node, reference));
         let opposite = Opposite::Side(Primary::new(side.clone(), Some(folds)));
         Self::between(side, opposite, reference, Box::new(sides))
     }
