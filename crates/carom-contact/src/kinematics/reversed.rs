@@ -56,7 +56,7 @@ impl NodesWithDepth {
         Self { nodes, depths }
     }
 
-    /// The same nodes, of which those that may have no depth may have this one.
+    /// Raises smaller depths to this one.
     #[must_use]
     pub fn with_at_least(mut self, least: f64) -> Self {
         self.depths.iter_mut().for_each(|depth| *depth = depth.max(least));
@@ -90,7 +90,7 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// Those of the nodes of a side that may have no depth.
+    /// Corners are the nodes of the side that may have no depth.
     pub(super) fn new<const D: usize>(
         side: &impl Facets<D>,
         nodes: &[usize],

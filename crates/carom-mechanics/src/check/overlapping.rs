@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What overlaps.
+/// Bodies or sides that overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Overlap {
     /// Two bodies, or a body and itself: their indices.

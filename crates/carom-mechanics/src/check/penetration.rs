@@ -40,7 +40,8 @@ pub struct Penetration {
 /// Depth over the length of a facet above which contact of two sides is doubtful, whatever its law
 /// allows.
 const DEEP: f64 = 0.2;
-/// The same of a side in itself: no stiffness that was chosen for it explains the depth.
+/// Depth over the length of a facet above which contact of a side with itself is doubtful: no
+/// stiffness that was chosen for it explains the depth.
 const DEEP_IN_ITSELF: f64 = 0.1;
 
 fn is_doubtful(contact: &Contact, depth: f64, length: f64) -> bool {

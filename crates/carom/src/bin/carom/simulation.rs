@@ -53,7 +53,7 @@ pub(crate) struct Outcome {
     pub(crate) report: Option<PathBuf>,
     /// Remarks for the summary.
     pub(crate) remarks: Vec<String>,
-    /// What values are compared with to tell round-off.
+    /// Sizes that values are compared with to tell round-off.
     #[serde(skip)]
     pub(crate) sizes: Option<Sizes>,
 }
