@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
 use crate::check::tips::{Pierced, Tips};
-use crate::check::watched::{Way, edge_points, has_gaps, keeps, lengths, watched};
+use crate::check::watched::{Way, edge_points, first_of_earlier, has_gaps, keeps, lengths, watched};
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -345,7 +345,7 @@ impl Penetration {
             // An active pair on its facet is no deeper than its gap.
             let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
             let contact = &model.contacts[k];
-            let half = contact.kinematics.nodes() / 2;
+            let half = first_of_earlier(contact);
             let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
             for pair in state.pairs[k].iter().filter(|pair| {
                 pair.active
@@ -396,7 +396,9 @@ impl Penetration {
                     let point = watched.point(y, model.dimension);
                     if let Some((facet, xi)) = watched.near {
                         let bound = skin.distance(facet, xi, point, y);
-                        if bound <= known && bound <= watched.limit(entered(facet).length) {
+                        let length = entered(facet).length;
+                        let is_deep = contact.is_some_and(|k| is_doubtful(&model.contacts[k], bound, length));
+                        if bound <= known && bound <= watched.limit(length) && !is_deep {
                             continue;
                         }
                     }

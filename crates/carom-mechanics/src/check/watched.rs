@@ -58,9 +58,10 @@ impl Way {
     /// The nodes of a side against the places of their own body that they may meet.
     pub(crate) fn of_itself(model: &Model, contact: usize, side: Side) -> Self {
         let Contact { kinematics, facets, depths, primary_part, .. } = &model.contacts[contact];
-        // Edges follow the nodes.
+        // Edges follow the nodes. Of a pressure field no node is held to more than its bounds.
         let nodes = &kinematics.secondary()[..kinematics.nodes()];
         let half = nodes.len() / 2;
+        let is_of_field = kinematics.is_of_field(0);
         let facets = &facets[0].1;
         let earlier: HashMap<usize, usize> = nodes[half..].iter().copied().zip(half..).collect();
         let mut shortest: HashMap<usize, f64> = HashMap::new();
@@ -73,8 +74,11 @@ impl Way {
         }
         let kinks = primary_part.map_or_else(Vec::new, |part| kinks(model, &model.parts[part]));
         let watched = |(node, longest)| {
-            let constrained = side == Side::Later
-                || earlier.get(&node).is_some_and(|&place| kinematics.allowed(place) == 0.0);
+            let is_held = || {
+                side == Side::Later
+                    || earlier.get(&node).is_some_and(|&place| kinematics.allowed(place) == 0.0)
+            };
+            let constrained = !is_of_field && is_held();
             // Before a node can enter a facet that it does not meet yet, the boundary folds.
             let reach = 0.5 * shortest.get(&node).copied().unwrap_or(f64::INFINITY);
             let is_kink = kinks.binary_search(&node).is_ok();
@@ -148,6 +152,15 @@ pub(crate) fn kept_depths(contact: &Contact) -> HashMap<usize, f64> {
 /// Whether a node of a contact keeps a depth.
 pub(crate) fn keeps(contact: &Contact) -> bool {
     contact.kinematics.kept_at_nodes().iter().any(|(_, depth)| *depth != 0.0)
+}
+
+/// Index of the first secondary node in the role of the earlier place, in contact of a side with
+/// itself: behind the coefficients of a pressure field, if there is one, and the later nodes.
+pub(crate) fn first_of_earlier(contact: &Contact) -> usize {
+    let kinematics = &contact.kinematics;
+    let all = kinematics.secondary().len();
+    let field = (0..all).take_while(|&place| kinematics.is_of_field(place)).count();
+    if field == 0 { kinematics.nodes() / 2 } else { field + (all - field) / 2 }
 }
 
 /// Whether every node of a contact has a gap: its primary is rigid, or a point.

@@ -59,12 +59,10 @@ const MUCH_DISSIPATED: f64 = 0.1;
 
 /// Contacts in which no node was ever active: of those of one table of the case, none.
 pub(super) fn open_contact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
-    let has_closed = run.column("activations").is_some_and(|column| column.iter().any(|count| *count > 0.0));
-    // Between rows another contact may have closed.
-    if has_closed && case.output.history_every > 1 {
-        return Vec::new();
-    }
-    let closed: BTreeSet<&str> = run.contact.iter().map(|row| row.contact.as_ref()).collect();
+    // Between rows a contact may have closed and opened.
+    let activated = events(run, "activation").filter_map(|event| event.data.get("contact")?.as_str());
+    let closed: BTreeSet<&str> =
+        run.contact.iter().map(|row| row.contact.as_ref()).chain(activated).collect();
     let mut tables: BTreeMap<usize, Vec<&ContactSpec>> = BTreeMap::new();
     case.contacts.iter().for_each(|contact| tables.entry(contact.entry).or_default().push(contact));
     let open = tables.into_values().filter(|all| all.iter().all(|c| !closed.contains(c.name.as_str())));

@@ -457,8 +457,8 @@ fn energy_that_load_steps_do_not_create() {
     assert!(recorded(PULLED, &[]).is_empty());
 }
 
-/// Waves in a bar that the step does not resolve: backward Euler and Hu's scheme take them, a
-/// scheme that keeps energy does not.
+/// Waves in a bar that the step does not resolve: Wood, Bossak and Zienkiewicz's scheme takes them,
+/// a scheme that keeps energy does not, and of backward Euler all know.
 #[test]
 fn energy_that_the_integrator_takes() {
     let id = "numerical-dissipation".to_owned();
