@@ -48,7 +48,7 @@ mod tests {
     use super::*;
     use crate::Column;
 
-    /// Of a force of 100 N, 1e-11 N is round-off, and of a modulus of 2e6 Pa a stress of 1e-6 Pa.
+    /// Beside a force of 100 N, 1e-11 N is round-off, and so is 1e-6 Pa beside a modulus of 2e6 Pa.
     #[test]
     fn values_far_below_their_quantity_are_round_off() {
         let column = |name: &str, unit: &str| Column {

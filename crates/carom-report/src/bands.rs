@@ -77,7 +77,7 @@ pub(crate) struct Bands {
 }
 
 impl Bands {
-    /// One white band, of values that are zero to round-off.
+    /// A single white band for values that are zero to round-off.
     pub(crate) const ZERO: Self = Self { low: -1.0, high: 1.0, count: 1 };
 
     pub(crate) fn is_zero(&self) -> bool {

@@ -24,7 +24,7 @@ const NAMED: &str = "body ";
 const MATERIAL: &str = "material ";
 
 /// Name of the cell array with the largest von Mises stress at the quadrature points of each cell.
-/// It is recorded where bodies yield: values at nodes are projected and may exceed the yield
+/// Runs in which bodies yield record it: values at nodes are projected and may exceed the yield
 /// stress.
 pub const LARGEST_VON_MISES: &str = "largest_von_mises";
 

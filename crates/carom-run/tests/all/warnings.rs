@@ -147,8 +147,7 @@ fn a_secondary_side_coarser_than_the_primary() {
     assert_eq!(id, "coarse-secondary");
     assert!(what.contains("contact \"strike\"") && what.contains("those of the primary 0.0104"), "{what}");
     assert!(!ids(IMPACT, &[]).contains(&id));
-    // Of a contact of `between` nobody chooses the sides: the first of two equal bodies is
-    // secondary.
+    // With `between` nobody chooses the sides: the first of two equal bodies is secondary.
     let all = DISCS.replace("secondary = \"left.arc\"\nprimary = \"right.arc\"", "between = \"all\"");
     let model = Setup::new(&case(&all, &["body.right.mesh.size=0.1"])).build().unwrap();
     let given = warnings(&case(&all, &["body.right.mesh.size=0.1"]), &model);

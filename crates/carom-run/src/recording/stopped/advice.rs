@@ -110,7 +110,7 @@ pub(in crate::recording) fn advice(
     let remedies = TABLE.iter().find(|(of, _)| *of == kind).map_or(OTHERWISE, |(_, remedies)| remedies);
     let mut remedies: Vec<&Remedy> = remedies.iter().collect();
     if case.time.scheme.is_explicit() {
-        // What a step does that is too long ends in any of these ways.
+        // An explicit step that is too long may end in any of these ways.
         remedies.sort_by_key(|remedy| **remedy != SHORTER);
     }
     let original = Original::new(case, source);
