@@ -133,6 +133,15 @@ impl Scene {
         full
     }
 
+    /// The row of a slip over all dofs.
+    fn slip(&self, pair: &Pair, y: &[f64]) -> Vec<f64> {
+        let mut rows = Rows::new(2);
+        self.contact.slip(pair, y, &[], &mut rows).unwrap();
+        let mut full = vec![0.0; y.len()];
+        rows.row(0).add_to(1.0, &mut full);
+        full
+    }
+
     /// A matrix over the nodes of a row as one over all dofs.
     fn full(&self, pair: &Pair, of: impl FnOnce(&mut [f64])) -> Vec<f64> {
         let rows = self.row(pair, &self.y);
@@ -162,16 +171,9 @@ fn derivatives_agree_with_differences() {
             let hessian = scene.full(&pair, |matrix| scene.contact.curvature_into(&pair, &scene.y, matrix));
             let error = jacobian_error(&scene.y, 1e-3, |y| scene.gradient(&pair, y), &hessian);
             assert!(error < 1e-8, "{shape:?} {}: second derivative {error:e}", pair.node);
-            let slip = |y: &[f64]| {
-                let mut rows = Rows::new(2);
-                scene.contact.slip(&pair, y, &[], &mut rows).unwrap();
-                let mut full = vec![0.0; y.len()];
-                rows.row(0).add_to(1.0, &mut full);
-                full
-            };
             let turned = scene
                 .full(&pair, |matrix| scene.contact.slip_derivative_into(&pair, &scene.y, &[], 0, matrix));
-            let error = jacobian_error(&scene.y, 1e-3, slip, &turned);
+            let error = jacobian_error(&scene.y, 1e-3, |y| scene.slip(&pair, y), &turned);
             assert!(error < 1e-8, "{shape:?} {}: slip {error:e}", pair.node);
         }
     }
@@ -196,6 +198,34 @@ fn derivatives_of_partly_facing_points_agree_with_differences() {
                 let error = jacobian_error(&scene.y, 1e-4, |y| scene.gradient(&pair, y), &hessian);
                 assert!(error < 1e-7, "{shape:?} {}: second derivative {error:e}", pair.node);
             }
+        }
+    }
+}
+
+/// Over a joint at which the primary turns, where surfaces touch, the second derivative includes the
+/// motion of that joint.
+#[test]
+fn derivatives_over_a_joint_of_the_primary_agree_with_differences() {
+    for (shape, turn) in SHAPES.into_iter().flat_map(|shape| [(shape, 0.1), (shape, -0.1)]) {
+        let (above, mut y) = chain(shape, [-0.9, 0.8], 1, 0, |x| 0.03 * x);
+        let (below, lower) = chain(shape, [1.0, -1.0], 2, y.len() / 2, |x| turn * x.abs());
+        y.extend(lower);
+        let side = |facets: &[Vec<usize>]| Surface::new(shape, facets, &vec![1.0; facets.len()]);
+        let [secondary, primary] = [&above, &below].map(|facets| side(facets));
+        let nodes =
+            |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
+        let sides =
+            Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
+        let scene = Scene { contact: Mortar::new(secondary, primary, &y, sides), y };
+        for pair in scene.pairs() {
+            let of = |matrix: &mut [f64]| scene.contact.curvature_into(&pair, &scene.y, matrix);
+            let hessian = scene.full(&pair, of);
+            let error = jacobian_error(&scene.y, 1e-5, |y| scene.gradient(&pair, y), &hessian);
+            assert!(error < 1e-6, "{shape:?} {turn} {}: second derivative {error:e}", pair.node);
+            let turned = scene
+                .full(&pair, |matrix| scene.contact.slip_derivative_into(&pair, &scene.y, &[], 0, matrix));
+            let error = jacobian_error(&scene.y, 1e-5, |y| scene.slip(&pair, y), &turned);
+            assert!(error < 1e-6, "{shape:?} {turn} {}: slip {error:e}", pair.node);
         }
     }
 }

@@ -12,7 +12,7 @@
 //! translation of one body alone strains.
 
 use crate::contact::constraints::Constraints;
-use crate::model::Model;
+use crate::model::{Model, Piece, tied_pieces};
 
 /// A translation that supports leave to a piece.
 #[derive(Debug)]
@@ -35,8 +35,8 @@ impl Wholes {
         let mut shift = vec![0.0; model.dofs()];
         let mut product = vec![0.0; model.dofs()];
         let mut wholes = Vec::new();
-        for (piece, axis) in pieces(model).iter().flat_map(|piece| (0..d).map(move |axis| (piece, axis))) {
-            let dofs: Vec<usize> = piece.iter().map(|node| node * d + axis).collect();
+        for (nodes, axis) in pieces(model).iter().flat_map(|nodes| (0..d).map(move |axis| (nodes, axis))) {
+            let dofs: Vec<usize> = nodes.iter().map(|node| node * d + axis).collect();
             if dofs.iter().any(|&dof| model.fixed[dof]) {
                 continue;
             }
@@ -78,35 +78,12 @@ impl Whole {
     }
 }
 
-/// The nodes of each piece, ascending: those that cells and ties connect.
+/// The nodes of each piece, and of those together that ties connect, ascending.
 fn pieces(model: &Model) -> Vec<Vec<usize>> {
-    let mut first: Vec<usize> = (0..model.dofs() / model.dimension).collect();
-    for part in &model.parts {
-        let mesh = part.body.mesh();
-        for cell in 0..mesh.cell_count() {
-            let roots = mesh.cell(cell).iter().map(|node| root(&mut first, part.first_node + node));
-            let roots: Vec<usize> = roots.collect();
-            let least = roots.iter().copied().fold(usize::MAX, usize::min);
-            roots.into_iter().for_each(|root| first[root] = least);
-        }
-    }
-    for point in model.points.iter() {
-        for (carrier, _) in &point.weights {
-            let roots = [point.node, *carrier].map(|node| root(&mut first, node));
-            first[roots[0].max(roots[1])] = roots[0].min(roots[1]);
-        }
-    }
-    let mut pieces: Vec<Vec<usize>> = vec![Vec::new(); first.len()];
-    (0..first.len()).for_each(|node| pieces[root(&mut first, node)].push(node));
-    pieces.retain(|piece| !piece.is_empty());
-    pieces
-}
-
-/// The first node of a chain, which is shortened.
-fn root(first: &mut [usize], mut node: usize) -> usize {
-    while first[node] != node {
-        first[node] = first[first[node]];
-        node = first[node];
-    }
-    node
+    let nodes = |group: Vec<Piece>| {
+        let mut nodes: Vec<usize> = group.into_iter().flat_map(|piece| piece.nodes).collect();
+        nodes.sort_unstable();
+        nodes
+    };
+    tied_pieces(&model.parts, &model.points).into_iter().map(nodes).collect()
 }

@@ -1,31 +1,36 @@
 //! Rigid modes that supports leave free. Without inertia only contact can constrain them; otherwise
 //! there is no equilibrium.
 //!
-//! The rigid modes of a body are its translations and rotations about its centre, u = t + ω × (x −
-//! c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs (supports), ties
-//! and active contacts (their gradients) are rows over these few unknowns; the null space of the
-//! rows is free. Bodies that ties connect have modes together.
+//! The rigid modes of a piece of a body are its translations and rotations about its centre, u = t +
+//! ω × (x − c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs
+//! (supports), ties and active contacts (their gradients) are rows over these few unknowns; the null
+//! space of the rows is free. Pieces that ties connect have modes together.
+
+use std::sync::Arc;
 
 use carom_contact::Row;
 
 use super::body_instance::BodyInstance;
+use super::pieces::{Piece, tied_pieces};
 use super::points::{Point, Points};
 
 /// Norm (rows are of order one) below which a row constrains nothing.
 const SHORT: f64 = 1e-8;
 
-/// A rigid mode of bodies that ties connect, or of one body, that supports leave free.
+/// A rigid mode of pieces that ties connect, or of one piece, that supports leave free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// The motion of each of them.
     pub motions: Vec<RigidMotion>,
 }
 
-/// A rigid motion of a body.
+/// A rigid motion of a piece of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigidMotion {
     /// Index of the body.
     pub part: usize,
+    /// Global numbers of the nodes of the piece, ascending.
+    pub nodes: Arc<[usize]>,
     translation: [f64; 3],
     rotation: [f64; 3],
     centre: [f64; 3],
@@ -34,10 +39,12 @@ pub struct RigidMotion {
 
 /// An unconstrained body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("body \"{body}\" is free to {motion}: {}", if *slips { SLIPS } else { FREE })]
+#[error("{}body \"{body}\" is free to {motion}: {}", if *is_piece { "a piece of " } else { "" }, if *slips { SLIPS } else { FREE })]
 pub struct Unconstrained {
     /// Its name.
     pub body: String,
+    /// Whether a piece of it is, not all of it.
+    pub is_piece: bool,
     /// Its free motion.
     pub motion: &'static str,
     /// Whether closed contacts would constrain it if they did not slip.
@@ -68,22 +75,40 @@ impl Mode {
 }
 
 impl RigidMotion {
-    /// All rigid modes of a body.
-    fn all(place: usize, part: &BodyInstance) -> Vec<Self> {
+    /// All rigid modes of a piece.
+    fn all(parts: &[BodyInstance], piece: &Piece) -> Vec<Self> {
+        let part = &parts[piece.part];
         let mesh = part.body.mesh();
         let mut centre = [0.0; 3];
         for i in 0..mesh.dimension() {
-            centre[i] = mesh.nodes.iter().map(|x| x[i]).sum::<f64>() / mesh.nodes.len() as f64;
+            let along = piece.nodes.iter().map(|node| mesh.nodes[node - part.first_node][i]);
+            centre[i] = along.sum::<f64>() / piece.nodes.len() as f64;
         }
-        let zero =
-            Self { part: place, translation: [0.0; 3], rotation: [0.0; 3], centre, size: mesh.diameter() };
+        let zero = Self {
+            part: piece.part,
+            nodes: piece.nodes.as_slice().into(),
+            translation: [0.0; 3],
+            rotation: [0.0; 3],
+            centre,
+            size: mesh.diameter(),
+        };
         let unit = |axis: usize| std::array::from_fn(|i| f64::from(u8::from(i == axis)));
         let (along, about) = axes(mesh.dimension());
         let translations = along.iter().map(|&i| Self { translation: unit(i), ..zero.clone() });
         translations.chain(about.iter().map(|&i| Self { rotation: unit(i), ..zero.clone() })).collect()
     }
 
-    /// Σ shares · modes, of one body.
+    /// Whether it moves a node.
+    fn moves(&self, node: usize) -> bool {
+        self.nodes.binary_search(&node).is_ok()
+    }
+
+    /// Whether it moves some nodes of its body and not others.
+    pub fn is_of_piece(&self, parts: &[BodyInstance]) -> bool {
+        self.nodes.len() < parts[self.part].nodes().len()
+    }
+
+    /// Σ shares · modes, of one piece.
     fn combined(modes: &[Self], shares: &[f64]) -> Self {
         let sum = |of: &dyn Fn(&Self) -> [f64; 3]| {
             std::array::from_fn(|i| modes.iter().zip(shares).map(|(mode, share)| share * of(mode)[i]).sum())
@@ -118,14 +143,14 @@ impl RigidMotion {
     }
 }
 
-/// Rigid modes that constrained dofs and ties leave to the bodies.
+/// Rigid modes that constrained dofs and ties leave to the pieces of bodies.
 pub fn free_motions(parts: &[BodyInstance], fixed: &[bool], points: &Points) -> Vec<Mode> {
     let mut free = Vec::new();
-    for group in groups(parts, points) {
+    for group in tied_pieces(parts, points) {
         let motions: Vec<RigidMotion> =
-            group.iter().flat_map(|&place| RigidMotion::all(place, &parts[place])).collect();
-        let supports = group.iter().flat_map(|&place| support_rows(parts, place, fixed, &motions));
-        let is_own = |point: &&Point| group.iter().any(|&place| parts[place].nodes().contains(&point.node));
+            group.iter().flat_map(|piece| RigidMotion::all(parts, piece)).collect();
+        let supports = group.iter().flat_map(|piece| support_rows(parts, piece, fixed, &motions));
+        let is_own = |point: &&Point| motions.iter().any(|motion| motion.moves(point.node));
         let ties = points.iter().filter(is_own).flat_map(|point| tie_rows(parts, point, &motions));
         for shares in null_space(motions.len(), supports.chain(ties)) {
             free.push(Mode { motions: combined(&motions, &shares) });
@@ -134,33 +159,15 @@ pub fn free_motions(parts: &[BodyInstance], fixed: &[bool], points: &Points) -> 
     free
 }
 
-/// The deformable bodies, those together that ties connect.
-fn groups(parts: &[BodyInstance], points: &Points) -> Vec<Vec<usize>> {
-    let part_of = |node: usize| parts.iter().position(|part| part.nodes().contains(&node));
-    let mut group: Vec<usize> = (0..parts.len()).collect();
-    for point in points.iter() {
-        for (carrier, _) in &point.weights {
-            let (Some(a), Some(b)) = (part_of(point.node), part_of(*carrier)) else { continue };
-            let [low, high] = [group[a].min(group[b]), group[a].max(group[b])];
-            group.iter_mut().filter(|group| **group == high).for_each(|group| *group = low);
-        }
-    }
-    let members = |first: usize| -> Vec<usize> {
-        (0..parts.len()).filter(|&place| group[place] == first && !parts[place].is_rigid()).collect()
-    };
-    (0..parts.len()).map(members).filter(|members| !members.is_empty()).collect()
-}
-
-/// The motions of the constrained dofs of a body.
+/// The motions of the constrained dofs of a piece.
 fn support_rows<'a>(
     parts: &'a [BodyInstance],
-    place: usize,
+    piece: &'a Piece,
     fixed: &'a [bool],
     motions: &'a [RigidMotion],
 ) -> impl Iterator<Item = Vec<f64>> + 'a {
-    let part = &parts[place];
-    let d = part.body.mesh().dimension();
-    let dofs = part.nodes().flat_map(move |node| (0..d).map(move |axis| (node, axis)));
+    let d = parts[piece.part].body.mesh().dimension();
+    let dofs = piece.nodes.iter().flat_map(move |&node| (0..d).map(move |axis| (node, axis)));
     let constrained = dofs.filter(move |(node, axis)| fixed[node * d + axis]);
     constrained.map(move |(node, axis)| moved(parts, motions, node, axis))
 }
@@ -182,23 +189,23 @@ fn tie_rows<'a>(
     })
 }
 
-/// Displacement of a node along an axis by each motion, zero by those of other bodies.
+/// Displacement of a node along an axis by each motion, zero by those of other pieces.
 fn moved(parts: &[BodyInstance], motions: &[RigidMotion], node: usize, axis: usize) -> Vec<f64> {
     let of = |motion: &RigidMotion| {
-        let part = &parts[motion.part];
-        if !part.nodes().contains(&node) {
+        if !motion.moves(node) {
             return 0.0;
         }
+        let part = &parts[motion.part];
         motion.at(&part.body.mesh().nodes[node - part.first_node], axis)
     };
     motions.iter().map(of).collect()
 }
 
-/// Σ shares · motions, of each body.
+/// Σ shares · motions, of each piece.
 fn combined(motions: &[RigidMotion], shares: &[f64]) -> Vec<RigidMotion> {
     let mut first = 0;
     let mut all = Vec::new();
-    for own in motions.chunk_by(|a, b| a.part == b.part) {
+    for own in motions.chunk_by(|a, b| a.nodes == b.nodes) {
         all.push(RigidMotion::combined(own, &shares[first..first + own.len()]));
         first += own.len();
     }
@@ -255,8 +262,7 @@ pub(crate) fn check_rigid_modes<'a>(
     let row = |gap: Row| -> Vec<f64> {
         let d = gap.dimension();
         let of_body = |motion: &RigidMotion| {
-            let nodes = parts[motion.part].nodes();
-            let own = gap.entries().filter(|(dof, _)| nodes.contains(&(dof / d)));
+            let own = gap.entries().filter(|(dof, _)| motion.moves(dof / d));
             own.map(|(dof, slope)| slope * motion.at(&y[dof / d * d..dof / d * d + d], dof % d)).sum::<f64>()
         };
         let along = |mode: &Mode| mode.motions.iter().map(of_body).sum::<f64>();
@@ -270,8 +276,10 @@ pub(crate) fn check_rigid_modes<'a>(
     let largest =
         (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
+    let first = mode.motions.first();
     Err(Unconstrained {
-        body: mode.motions.first().map_or_else(String::new, |motion| parts[motion.part].name.clone()),
+        body: first.map_or_else(String::new, |motion| parts[motion.part].name.clone()),
+        is_piece: first.is_some_and(|motion| motion.is_of_piece(parts)),
         motion: mode.motion(),
         slips: remaining_with_slips.is_empty(),
     })

@@ -49,10 +49,8 @@ pub(crate) fn are_balanced(equations: &Equations, now: &Evaluation, noise: f64) 
         let mut sums = [0.0; 5];
         let mut sizes = 0.0;
         let mut whole = 0.0;
-        let of_bodies = mode.motions.iter();
-        for (rigid, node) in
-            of_bodies.flat_map(|rigid| model.parts[rigid.part].nodes().map(move |n| (rigid, n)))
-        {
+        let of_motions = mode.motions.iter();
+        for (rigid, node) in of_motions.flat_map(|rigid| rigid.nodes.iter().map(move |&n| (rigid, n))) {
             let place = &now.y[node * d..(node + 1) * d];
             let moved = motion[node * d..(node + 1) * d].iter().map(|m| m * m).sum::<f64>().sqrt();
             for (axis, i) in (node * d..(node + 1) * d).enumerate() {

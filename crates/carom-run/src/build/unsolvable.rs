@@ -8,17 +8,19 @@ use carom_mechanics::model::{BodyInstance, Contact, Mode};
 pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[Contact]) -> Vec<Problem> {
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
+        let own = free.iter().find_map(|mode| {
+            let motion = mode.motions.iter().find(|motion| motion.part == place)?;
+            Some((mode, motion))
+        });
+        let Some((mode, motion)) = own else { continue };
         let involves = |c: &Contact| {
-            // A body cannot constrain itself.
             let secondary =
                 |place: usize| c.kinematics.secondary().iter().any(|n| parts[place].nodes().contains(n));
-            !c.itself && (c.primary_part == Some(place) || secondary(place))
+            // A body cannot constrain itself, but a piece of it another one.
+            let can_constrain = !c.itself || motion.is_of_piece(parts);
+            can_constrain && (c.primary_part == Some(place) || secondary(place))
         };
-        if let Some(mode) = free
-            .iter()
-            .find(|mode| mode.motions.iter().any(|motion| motion.part == place))
-            .filter(|_| !contacts.iter().any(involves))
-        {
+        if !contacts.iter().any(involves) {
             problems.push(Problem::new(
                 format!("body[{place}]"),
                 format!("body \"{}\" is free to {} and has no equilibrium", part.name, mode.motion()),

@@ -113,6 +113,42 @@ fn same(one: &Case, two: &Case, tolerance: f64) -> [Simulation; 2] {
     both
 }
 
+/// The second strip, of length 3, rests on the end of the first one, of length 10, which is held at
+/// its other end: by their contact alone, in load steps. Under gravity g along the strips, with ν =
+/// 0, the joint presses with ρg·3 and moves by −ρg·10 (3 + 10/2)/E. Without friction nothing holds
+/// the second strip across.
+#[test]
+fn a_piece_of_a_body_rests_on_another_one() {
+    let resting = |contact: &str| {
+        let text = format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "linear-elastic", density = 1.0, young = 1.0, poisson = 0.0 }}]
+            support = [{{ on = ["both.left"], fix = ["x", "y"] }}]
+            contact = [{{ name = "joint", between = ["both"], {contact} }}]
+            time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
+            [[body]]
+            name = "both"
+            material = "m"
+            element = "T6"
+            mesh = {{ file = "{ROOT}strips.msh", surface = "both", slits = true }}
+            gravity = [-1e-4, 0.0]
+            "#
+        );
+        Case::from_text(&text, &[]).unwrap()
+    };
+    let stopped = simulation(&resting(r#"method = "mortar""#)).step().unwrap_err().to_string();
+    assert!(stopped.contains(r#"a piece of body "both" is free to"#), "{stopped}");
+
+    let rested = advanced(&resting(r#"method = "mortar", mu = 0.5"#), 1);
+    let x = &rested.model().reference;
+    let joint = (0..x.len() / 2).filter(|n| x[2 * n].abs() < 1e-12);
+    for node in joint {
+        let moved = rested.state().y[2 * node] - x[2 * node];
+        assert!((moved / -0.008 - 1.0).abs() < 1e-9, "{moved}");
+    }
+}
+
 /// Before the ring touches itself, and after.
 #[test]
 fn a_pinched_ring_moves_like_half_of_it_on_a_plane() {

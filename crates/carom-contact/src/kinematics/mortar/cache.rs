@@ -1,6 +1,7 @@
 //! Quadrature points and gaps of the secondary facets at one configuration.
 
 use super::cut::{Opposed, Regions};
+use super::joint::Joint;
 use super::multipliers::MOST;
 use super::opposite::PointGap;
 use super::turned::Turned;
@@ -25,6 +26,8 @@ pub(super) struct Faced {
     pub(super) points: Vec<Measured>,
     /// Terms of the gradient from the motion of the ends of the primary, with the area 1.
     pub(super) borders: Vec<Measured>,
+    /// Joints of the primary over the facet.
+    pub(super) joints: Vec<Joint>,
     /// Range of ξ that faces the primary.
     pub(super) ends: Option<[f64; 2]>,
     /// For each polynomial the one whose multiplier carries it, once it is known.

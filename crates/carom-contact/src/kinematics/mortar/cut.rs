@@ -139,6 +139,8 @@ pub(super) struct Facing {
     pub(super) ends: Option<[f64; 2]>,
     /// Places at which the primary ends.
     pub(super) borders: Vec<Crossing>,
+    /// Joints of the primary, but for kinks.
+    pub(super) joints: Vec<Meeting>,
 }
 
 /// A place on a secondary facet over an end of a facet of the primary.
@@ -153,6 +155,17 @@ pub(super) struct Crossing {
     pub(super) sides: [Option<Opposed>; 2],
 }
 
+/// A place on a secondary facet over a joint of two facets of the primary.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meeting {
+    /// Coordinate on the secondary facet.
+    pub(super) xi: f64,
+    /// The facets that it faces before and after this place.
+    pub(super) facets: [usize; 2],
+    /// Whether the second follows the first in the direction of traversal of the primary.
+    pub(super) forward: bool,
+}
+
 /// A part of a secondary facet with the facet of the primary that it faces, if there is one.
 struct Piece<'a> {
     ends: [f64; 2],
@@ -163,7 +176,7 @@ impl Facing {
     /// A facet of which all points face a rigid obstacle.
     pub(super) fn whole(rule: &Rule) -> Self {
         let points = rule.points.iter().map(|&[xi, weight]| Opposed { xi, weight, facet: 0, eta: 0.0 });
-        Self { points: points.collect(), ends: Some([-1.0, 1.0]), borders: Vec::new() }
+        Self { points: points.collect(), ends: Some([-1.0, 1.0]), ..Self::default() }
     }
 }
 
@@ -266,7 +279,22 @@ impl Opposites<'_> {
             found.ends = Some([found.ends.map_or(piece[0], |ends| ends[0]), piece[1]]);
         }
         found.borders = self.borders(own, &parts, &pieces);
+        found.joints = pieces.windows(2).filter_map(|pieces| self.meeting(&pieces[0], &pieces[1])).collect();
         found
+    }
+
+    /// The joint between two pieces, if they meet there.
+    fn meeting(&self, before: &Piece, after: &Piece) -> Option<Meeting> {
+        let xi = before.ends[1];
+        let (first, region) = before.faced?;
+        let (second, _) = after.faced?;
+        let meets = |forward: bool| {
+            !region.is_free[usize::from(forward)]
+                && self.surface.neighbour_of_side(first, forward) == Some(second)
+        };
+        let forward = [true, false].into_iter().find(|&forward| meets(forward))?;
+        let is_between = after.ends[0] - xi <= ROUND_OFF && first != second;
+        is_between.then_some(Meeting { xi, facets: [first, second], forward })
     }
 
     /// The places between pieces, or beside the first and the last one, at which a facet of the

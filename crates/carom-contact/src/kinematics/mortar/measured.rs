@@ -11,12 +11,13 @@ use carom_algebra::Vector;
 
 use super::border::{self, Border, End};
 use super::cache::{Cache, Faced, Measured};
-use super::cut::{Crossing, Facing, Opposed, Regions};
+use super::cut::{Crossing, Facing, Meeting, Opposed, Regions};
+use super::joint::Joint;
 use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
 use super::sides::Mortar;
 use super::turned::{Own, Turned};
-use crate::kinematics::projection::Facet;
+use crate::kinematics::projection::{Facet, FacetPoint};
 use crate::places::Places;
 
 /// Share of the area of a multiplier that must face the primary for a pressure of its own.
@@ -55,10 +56,11 @@ impl Mortar {
                 continue;
             }
             let own = self.secondary.facet(part.facet);
-            let Facing { points, ends, borders } = facing(part.facet, own);
+            let Facing { points, ends, borders, joints } = facing(part.facet, own);
             of.borders = borders.iter().filter_map(|at| self.border(own, at, y)).collect();
             let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
             of.points = measured.filter(|point| point.area > 0.0).collect();
+            of.joints = joints.iter().filter_map(|at| self.joint(own, at, y)).collect();
             of.ends = ends;
             of.is_measured = true;
         }
@@ -97,6 +99,22 @@ impl Mortar {
         let border = Border::new(&own.at(y, at.xi), &end, jumps, of_jump)?;
         let at = Opposed { xi: at.xi, weight: 0.0, facet: at.facet, eta: at.eta };
         Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None })
+    }
+
+    /// The term of the second derivative from the motion of a joint of the primary over a secondary
+    /// facet.
+    fn joint(&self, own: Facet, at: &Meeting, y: Places) -> Option<Joint> {
+        let Opposite::Side(primary) = &self.opposite else { return None };
+        let [before, after] = at.facets.map(|facet| primary.surface.facet(facet));
+        let [eta, other] = if at.forward { [1.0, -1.0] } else { [-1.0, 1.0] };
+        let [before_it, after_it] = [before.at(y, eta), after.at(y, other)];
+        let normal = before_it.normal - after_it.normal;
+        let along = |at: &FacetPoint| at.tangent * at.measure.recip();
+        let tangent = along(&before_it) - along(&after_it);
+        let rate = normal.dot(&own.at(y, at.xi).tangent);
+        let node = before.nodes[usize::from(at.forward)];
+        let weight = own.at(self.reference(), at.xi).measure / rate;
+        weight.is_finite().then_some(Joint { xi: at.xi, facets: at.facets, node, normal, tangent, weight })
     }
 
     /// For each polynomial of a facet, with its multipliers, the polynomial that carries it:

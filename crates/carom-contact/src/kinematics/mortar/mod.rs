@@ -10,6 +10,7 @@ mod border;
 mod cache;
 mod cut;
 mod field;
+mod joint;
 mod measured;
 mod multipliers;
 mod opposite;
@@ -189,6 +190,7 @@ impl Kinematics for Mortar {
             let count = sample.curvature_into(&mut of_sample);
             stencil.add_matrix(self, &sample, &of_sample[..4 * count * count], curvature);
         }
+        self.add_joints(pair, Places::new(y, 2), &stencil, curvature, |joint| joint.normal);
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
@@ -210,6 +212,7 @@ impl Kinematics for Mortar {
             let count = sample.gap.count();
             stencil.add_matrix(self, &sample, &of_sample[..4 * count * count], matrix);
         }
+        self.add_joints(pair, Places::new(y, 2), &stencil, matrix, |joint| joint.tangent);
     }
 }
 

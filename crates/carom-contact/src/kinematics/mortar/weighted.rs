@@ -13,6 +13,7 @@ use carom_algebra::Vector;
 
 use super::cache::{Faced, Measured};
 use super::cut::{Quadrature, Rule};
+use super::joint::Joint;
 use super::multipliers::{Part, bernstein};
 use super::opposite::PointGap;
 use super::sides::Mortar;
@@ -210,6 +211,39 @@ impl Mortar {
             }
             Ok(samples)
         })
+    }
+
+    /// Adds the terms of the joints of the primary to the derivative of a row of a pair; `jump`: that
+    /// of the row at a joint.
+    pub(super) fn add_joints(
+        &self,
+        pair: &Pair,
+        y: Places,
+        stencil: &Stencil,
+        matrix: &mut [f64],
+        jump: impl Fn(&Joint) -> Vector<2>,
+    ) {
+        let multiplier = &self.multipliers[pair.node];
+        let size = 2 * stencil.nodes.len();
+        let place = |node: usize| stencil.nodes.iter().position(|&other| other == node);
+        self.at(y, &multiplier.parts, |of_facets| {
+            for &Part { facet, polynomial } in &multiplier.parts {
+                let own = self.secondary.facet(facet);
+                let carriers = of_facets[facet].carriers.unwrap_or_default();
+                for joint in &of_facets[facet].joints {
+                    if !joint.facets.iter().all(|&facet| self.opposite.is_in_window(pair, facet)) {
+                        continue;
+                    }
+                    let carried = (0..=self.degree).filter(|&number| carriers[number] == polynomial);
+                    let value = carried.map(|number| bernstein(self.degree, number, joint.xi)).sum::<f64>();
+                    let of_point = own.nodes.iter().copied().zip(own.shape.at(joint.xi).values);
+                    let by = of_point.chain([(joint.node, -1.0)]);
+                    let places: Vec<(usize, f64)> =
+                        by.filter_map(|(node, weight)| Some((place(node)?, weight))).collect();
+                    joint.add_to(value / multiplier.area, jump(joint), &places, size, matrix);
+                }
+            }
+        });
     }
 
     /// The smallest gap of a pair at the ends of facets, of either side, on its part of the
