@@ -4,6 +4,10 @@
 //! inactive pairs and g = 0 on active ones this is "activate if g < 0, release if λ > 0", whatever
 //! c > 0. Visited sets are stored. When one recurs, changes wait until Newton has converged; when
 //! one recurs again, only the worst pair changes at a time.
+//!
+//! Friction makes the problem unsymmetric, and of two nearly dependent gaps, as of two nodes that
+//! meet, the second can be violated while open and in tension while closed, against the first. Then
+//! the second alone solves it: the two are exchanged.
 
 use crate::visited::Visited;
 
@@ -81,8 +85,12 @@ impl ActiveSet {
         }
         if self.visited.is_cautious() {
             wrong.sort_by(|&a, &b| violation(&pairs[b]).total_cmp(&violation(&pairs[a])));
-            let untried = wrong.iter().copied().find(|&k| !self.visited.contains(&after(&[k])));
-            return untried.map(|k| vec![k]).ok_or(Cycle { pairs: wrong });
+            let is_untried = |&k: &usize| !self.visited.contains(&after(&[k]));
+            let leads_on = |&k: &usize| is_untried(&k) && !self.visited.was_restricted_at(&after(&[k]));
+            let next = wrong.iter().copied().find(leads_on);
+            let next = next.or_else(|| opponents(pairs, &wrong).into_iter().find(is_untried));
+            let next = next.or_else(|| wrong.iter().copied().find(is_untried));
+            return next.map(|k| vec![k]).ok_or(Cycle { pairs: wrong });
         }
         Ok(wrong)
     }
@@ -91,6 +99,17 @@ impl ActiveSet {
     pub fn restart(&mut self) {
         self.visited.restart();
     }
+}
+
+/// The closed pairs under pressure against which one in tension, the first of those that are
+/// wrong, may work: that whose multiplier is nearest to the opposite one first.
+fn opponents(pairs: &[Contender], wrong: &[usize]) -> Vec<usize> {
+    let Some(&pulled) = wrong.iter().find(|&&k| pairs[k].active) else { return Vec::new() };
+    let mut pressed: Vec<usize> =
+        (0..pairs.len()).filter(|&k| pairs[k].active && pairs[k].lambda < 0.0).collect();
+    let rest = |k: usize| (pairs[k].lambda + pairs[pulled].lambda).abs();
+    pressed.sort_by(|&a, &b| rest(a).total_cmp(&rest(b)));
+    pressed
 }
 
 #[cfg(test)]
@@ -129,5 +148,40 @@ mod tests {
             named |= set.changes(if k % 2 == 0 { &closed } else { &open }, true).is_err();
         }
         assert!(named);
+    }
+
+    /// The gaps g = q − A λ of a matrix with positive diagonal and negative determinant: the first
+    /// pair alone leaves the second open with penetration, both put it in tension, and it alone is
+    /// the solution.
+    #[test]
+    fn of_two_nearly_dependent_gaps_the_one_that_suffices_alone_is_found() {
+        let q = [-1.0, -1.0];
+        let a = [[1.0, 1.02], [0.99, 1.0]];
+        let solved = |active: [bool; 2]| {
+            let mut forces = [0.0; 2];
+            match active {
+                [true, true] => {
+                    let det = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+                    forces[0] = (a[1][1] * q[0] - a[0][1] * q[1]) / det;
+                    forces[1] = (a[0][0] * q[1] - a[1][0] * q[0]) / det;
+                }
+                [true, false] => forces[0] = q[0] / a[0][0],
+                [false, true] => forces[1] = q[1] / a[1][1],
+                [false, false] => {}
+            }
+            [0, 1].map(|k| {
+                let gap = q[k] - a[k][0] * forces[0] - a[k][1] * forces[1];
+                pair(active[k], gap, forces[k])
+            })
+        };
+        let mut set = ActiveSet::new(1e-12, true);
+        let mut active = [true, false];
+        for _ in 0..12 {
+            let state = solved(active);
+            for k in set.changes(&state, true).unwrap() {
+                active[k] = !active[k];
+            }
+        }
+        assert_eq!(active, [false, true]);
     }
 }

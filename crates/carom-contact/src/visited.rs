@@ -18,6 +18,9 @@ enum Caution {
 pub(crate) struct Visited<S> {
     sets: HashSet<S>,
     caution: Caution,
+    /// The set at which changes were restricted to one pair. It does not count as visited: its
+    /// other pairs have not been tried.
+    restricted_at: Option<S>,
 }
 
 impl<S: Eq + Hash> Visited<S> {
@@ -25,7 +28,7 @@ impl<S: Eq + Hash> Visited<S> {
     /// has converged.
     pub(crate) fn new(within: bool) -> Self {
         let caution = if within { Caution::EveryIteration } else { Caution::AfterConvergence };
-        Self { sets: HashSet::new(), caution }
+        Self { sets: HashSet::new(), caution, restricted_at: None }
     }
 
     /// Whether changes are restricted to one pair at a time.
@@ -42,6 +45,11 @@ impl<S: Eq + Hash> Visited<S> {
         self.sets.contains(set)
     }
 
+    /// Whether changes were restricted to one pair at this set.
+    pub(crate) fn was_restricted_at(&self, set: &S) -> bool {
+        self.restricted_at.as_ref() == Some(set)
+    }
+
     /// Records a set that is to change into another one, `next`, and restricts changes if `next`
     /// was visited before.
     pub(crate) fn visit(&mut self, set: S, next: &S, converged: bool) {
@@ -49,6 +57,7 @@ impl<S: Eq + Hash> Visited<S> {
             self.sets.clear();
             if self.caution == Caution::AfterConvergence {
                 self.caution = Caution::OneAtATime;
+                self.restricted_at = Some(set);
                 return;
             }
             self.caution = Caution::AfterConvergence;
