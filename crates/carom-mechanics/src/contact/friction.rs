@@ -83,6 +83,13 @@ pub(crate) enum Counted {
     Velocity,
 }
 
+/// A pair measured where its slip is.
+pub(crate) struct Slipping {
+    pub pair: Pair,
+    /// The positions at the end of the step, if that is there and not at its middle.
+    pub end: Option<Vec<f64>>,
+}
+
 /// A closed pair that rubs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Rubbing {
@@ -138,12 +145,10 @@ impl Equations<'_> {
         slips: &mut Rows,
     ) -> Result<Counted, ContactError> {
         let kinematics = &self.model.contacts[contact].kinematics;
-        let mut at_middle = *pair;
-        kinematics.measure(&mut at_middle, middle, slips)?;
-        slips.pop();
+        let at = self.slipping(contact, pair, middle, increment, slips)?;
         let part = self.part(contact, pair, gap, slips);
         let first = slips.len();
-        kinematics.slip(&at_middle, middle, increment, slips)?;
+        kinematics.slip(&at.pair, at.end.as_deref().unwrap_or(middle), increment, slips)?;
         for row in first..slips.len() {
             let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
             let slip = slips.row(row).entries().map(counted).sum();
@@ -151,6 +156,31 @@ impl Equations<'_> {
         }
         pair.tangential.tangents = slips.tangents(first);
         Ok(part)
+    }
+
+    /// A pair measured at the middle of the step, or at its end if it faces nothing before: beside
+    /// an end of the primary a part of a surface gains its partner within the step.
+    pub(crate) fn slipping(
+        &self,
+        contact: usize,
+        pair: &Pair,
+        middle: &[f64],
+        increment: &[f64],
+        rows: &mut Rows,
+    ) -> Result<Slipping, ContactError> {
+        let kinematics = &self.model.contacts[contact].kinematics;
+        let mut measure = |y: &[f64]| {
+            let mut at = *pair;
+            kinematics.measure(&mut at, y, rows)?;
+            rows.pop();
+            Ok(at)
+        };
+        let at_middle = measure(middle)?;
+        if at_middle.active || !pair.active {
+            return Ok(Slipping { pair: at_middle, end: None });
+        }
+        let end: Vec<f64> = middle.iter().zip(increment).map(|(y, d)| y + 0.5 * d).collect();
+        Ok(Slipping { pair: measure(&end)?, end: Some(end) })
     }
 
     /// S of a pair that closes in an iterate; 0 if it has none.
@@ -370,7 +400,8 @@ impl Equations<'_> {
     /// Share of the step after the touch of a pair that closes, which approaches with its velocity
     /// at the start, or at the mean one if that is larger.
     pub(crate) fn since_touch(&self, contact: usize, pair: &Pair, gap: Row, rows: &mut Rows) -> f64 {
-        let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
+        // A part of a surface that faces nothing has no gap yet.
+        let start = self.gap_at_start(contact, pair, rows).ok().filter(|gap| gap.is_finite()).unwrap_or(0.0);
         let approach = (-gap.along(&self.state.v)).max(start / self.duration);
         if start > 0.0 { 1.0 - start / (self.duration * approach) } else { 1.0 }
     }

@@ -5,7 +5,7 @@ use carom_contact::length;
 use crate::contact::friction::{Counted, Rubbing, rows_of};
 use crate::contact::slip_derivatives::SlipDerivatives;
 use crate::stage::equations::Equations;
-use crate::stage::evaluation::Evaluation;
+use crate::stage::evaluation::{Evaluation, Iterate};
 
 impl Equations<'_> {
     /// Computes the derivatives of a pair, if they are not there yet.
@@ -25,9 +25,9 @@ impl Equations<'_> {
         rows.clear();
         let part = self.part(contact, pair, evaluation.rows[contact].row(p).gap, rows);
         let share = if let Counted::Share(share) = part { share } else { 1.0 };
-        let mut at_middle = *pair;
+        let Evaluation { middle, at: Iterate { increment, .. }, .. } = evaluation;
         // It was measured in the evaluation.
-        let is_there = kinematics.measure(&mut at_middle, &evaluation.middle, rows).is_ok();
+        let at = self.slipping(contact, pair, middle, increment, rows).ok();
         for (tangent, row) in rows_of(slips, p).map(|row| slips.row(row)).enumerate() {
             let turned = &mut turned[tangent];
             let slope = &mut slopes[tangent];
@@ -35,14 +35,12 @@ impl Equations<'_> {
             slope.extend(row.gradient.iter().map(|h| share * h));
             turned.clear();
             turned.resize(slope.len().pow(2), 0.0);
-            if !is_there {
-                continue;
-            }
-            let y = &evaluation.middle;
-            let moved = &evaluation.at.increment;
-            kinematics.slip_derivative_into(&at_middle, y, moved, tangent, turned);
-            turned.iter_mut().for_each(|entry| *entry *= 0.5);
-            let counted = row.entries().map(|(dof, _)| self.counted(dof, part, &evaluation.at.increment));
+            let Some(at) = &at else { continue };
+            let y = at.end.as_ref().unwrap_or(middle);
+            kinematics.slip_derivative_into(&at.pair, y, increment, tangent, turned);
+            let share = if at.end.is_some() { 1.0 } else { 0.5 };
+            turned.iter_mut().for_each(|entry| *entry *= share);
+            let counted = row.entries().map(|(dof, _)| self.counted(dof, part, increment));
             for (turned, moved) in turned.chunks_exact(slope.len()).zip(counted) {
                 slope.iter_mut().zip(turned).for_each(|(slope, h)| *slope += h * moved);
             }

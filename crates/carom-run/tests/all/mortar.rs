@@ -385,6 +385,73 @@ fn a_uniform_pressure_is_uniform_with_multipliers_and_springs() {
     }
 }
 
+/// A block slides over the joint of two flush tables. It is carried by normal forces whose impulse
+/// is that of its weight but for what its height oscillates, so that friction takes μ g t from its
+/// velocity, whichever side is secondary. At the ends of the tables coefficients of the pressure gain
+/// and lose their partners within a step.
+#[test]
+fn friction_over_a_joint_takes_no_more_than_mu_times_the_weight() {
+    let joint = |element: &str, cells: usize, sides: [[&str; 2]; 2]| {
+        let [[first, on_first], [second, on_second]] = sides;
+        let table = |name: &str, from: f64, to: f64, cells: usize| {
+            format!(
+                r#"
+                [[body]]
+                name = "{name}"
+                material = "m"
+                element = "{element}"
+                mesh = {{ shape = "rectangle", min = [{from:?}, -0.2], max = [{to:?}, 0.0], cells = [{cells}, 1] }}
+                [[support]]
+                on = ["{name}.bottom"]
+                fix = ["x", "y"]
+                "#
+            )
+        };
+        format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 2e4, poisson = 0.2 }}]
+            time = {{ end = 0.7, step = 0.002, scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }} }}
+            [[body]]
+            name = "b"
+            material = "m"
+            element = "{element}"
+            mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.2], cells = [{cells}, 1] }}
+            gravity = [0.0, -10.0]
+            velocity = [2.0, 0.0]
+            {}
+            {}
+            [[contact]]
+            name = "first"
+            secondary = "{first}"
+            primary = "{on_first}"
+            mu = 0.2
+            method = "mortar"
+            [[contact]]
+            name = "second"
+            secondary = "{second}"
+            primary = "{on_second}"
+            mu = 0.2
+            method = "mortar"
+            "#,
+            table("s", -0.5, 1.0, 6),
+            table("t", 1.0, 1.8, 4)
+        )
+    };
+    let below = [["b.bottom", "s.top"], ["b.bottom", "t.top"]];
+    let above = [["s.top", "b.bottom"], ["t.top", "b.bottom"]];
+    for (element, cells, sides) in [("Q4", 5, below), ("T6", 6, above)] {
+        let end = finish(simulation(&joint(element, cells, sides), &[""; 0]));
+        let mut momenta = vec![0.0; end.model().dofs()];
+        end.model().mass.multiply_into(&end.state().v, &mut momenta);
+        let momentum: f64 = end.model().parts[0].nodes().map(|node| momenta[2 * node]).sum();
+        let velocity = momentum / 0.2;
+        assert!((velocity - (2.0 - 0.2 * 10.0 * 0.7)).abs() < 1e-3, "{element}: {velocity}");
+        let slips = end.state().pairs.iter().flatten().map(|pair| pair.tangential.slip[0]);
+        assert!(slips.into_iter().all(f64::is_finite), "{element}");
+    }
+}
+
 /// Where every point of the side slips, friction is the shear limit times the area, 1; of Q4 the
 /// corner behind carries its force alone, and leaves out its half facet.
 #[test]
