@@ -245,6 +245,11 @@ impl Kinematics for Combined {
         part.area(node)
     }
 
+    fn is_in_plane_of_symmetry(&self, node: usize) -> bool {
+        let (part, node) = self.of(node);
+        part.is_in_plane_of_symmetry(node)
+    }
+
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {
         let count = self.parts[0].secondary().len();
         let own = &pairs[..pairs.partition_point(|pair| pair.node < count)];

@@ -203,6 +203,12 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
         None
     }
 
+    /// Whether a secondary node, given by index, stands for a coefficient of a pressure field in a
+    /// plane of symmetry, where no tangential traction acts.
+    fn is_in_plane_of_symmetry(&self, _node: usize) -> bool {
+        false
+    }
+
     /// Pressures at the nodes of the secondary side, where the pairs are coefficients of a pressure
     /// field; none where they are forces on nodes. `y`: positions;
     /// `thickness`: thickness of the bodies.

@@ -101,6 +101,11 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
                 *limit = kinematics.area(node).map_or(of_node, |area| shear * case.thickness * area);
             }
         }
+        let in_plane = (0..rubbing.len()).filter(|&node| kinematics.is_in_plane_of_symmetry(node));
+        for node in in_plane {
+            friction.limits.resize(rubbing.len(), f64::INFINITY);
+            friction.limits[node] = 0.0;
+        }
         friction.edges = kinematics.secondary().len() - rubbing.len();
         if spec.enforcement == Enforcement::Penalty {
             friction.springs = normal[..rubbing.len()].iter().map(|of| stick * of).collect();

@@ -15,6 +15,7 @@ mod measured;
 mod multipliers;
 mod opposite;
 mod sides;
+mod symmetry;
 mod turned;
 mod weighted;
 mod windows;
@@ -176,6 +177,10 @@ impl Kinematics for Mortar {
 
     fn area(&self, multiplier: usize) -> Option<f64> {
         Some(self.multipliers[multiplier].area)
+    }
+
+    fn is_in_plane_of_symmetry(&self, multiplier: usize) -> bool {
+        self.meets_plane_of_symmetry(multiplier)
     }
 
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {
