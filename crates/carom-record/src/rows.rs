@@ -125,7 +125,7 @@ impl<'a> ContactRow<'a> {
         cells.push(cell("gap", Unit::Length, "gap, negative if penetrating", Real(&mut self.gap)));
         let meaning = "normal force λ ≤ 0";
         cells.push(cell("multiplier", Unit::Force, meaning, Real(&mut self.multiplier)));
-        let meaning = "contact pressure at the node, per deformed area";
+        let meaning = "contact pressure at the node, per deformed area; in plane stress the thickness is the undeformed one";
         cells.push(cell("pressure", Unit::Stress, meaning, Real(&mut self.pressure)));
         let meaning =
             "unit normal out of the primary; the force on the secondary side is −multiplier × normal";

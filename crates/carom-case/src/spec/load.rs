@@ -91,7 +91,8 @@ pub(crate) struct LoadKeys {
         example = "[\"0\", \"-5*min(t/0.1, 1)\"]"
     )]
     traction: Option<Vec<FormulaSpec>>,
-    /// Follower load per current area, acting against the outward normal.
+    /// Follower load per current area, acting against the outward normal; in plane stress per
+    /// current length and undeformed thickness.
     #[key(Formula(IN_SPACE_AND_TIME), unit = "mass/(length·time²)", example = "\"2*t\"")]
     pressure: Option<FormulaSpec>,
     /// Dead load per reference volume.

@@ -181,7 +181,7 @@ pub(super) const HISTORY: [Definition; 29] = [
         Unit::None,
         "max BODY.plastic_strain_last",
         OWN,
-        "largest equivalent plastic strain that remains at the end, over the quadrature points of all bodies",
+        "largest accumulated equivalent plastic strain at the end, over the quadrature points of all bodies",
         ledger::permanent_set,
     ),
     d(
