@@ -15,6 +15,9 @@ use crate::visited::Visited;
 /// stay active.
 const RELEASE: f64 = 1e-10;
 
+/// Cosine of the gradients of two gaps, 60°, from which one nearly depends on the other.
+const ALIKE: f64 = 0.5;
+
 /// Gap and multiplier of one pair, and whether it is active.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contender {
@@ -56,8 +59,17 @@ impl ActiveSet {
     }
 
     /// Indices of the pairs to activate or release, given the state of an iteration; empty if the
-    /// set is correct or must not change yet.
-    pub fn changes(&mut self, pairs: &[Contender], converged: bool) -> Result<Vec<usize>, Cycle> {
+    /// set is correct or must not change yet. `alike`: cosine of the angle between the gradients of
+    /// two gaps.
+    ///
+    /// # Errors
+    /// If the set returns to a visited one in spite of all restrictions.
+    pub fn changes(
+        &mut self,
+        pairs: &[Contender],
+        converged: bool,
+        alike: impl Fn(usize, usize) -> f64,
+    ) -> Result<Vec<usize>, Cycle> {
         if self.visited.waits(converged) {
             return Ok(Vec::new());
         }
@@ -88,7 +100,7 @@ impl ActiveSet {
             let is_untried = |&k: &usize| !self.visited.contains(&after(&[k]));
             let leads_on = |&k: &usize| is_untried(&k) && !self.visited.was_restricted_at(&after(&[k]));
             let next = wrong.iter().copied().find(leads_on);
-            let next = next.or_else(|| opponents(pairs, &wrong).into_iter().find(is_untried));
+            let next = next.or_else(|| opponents(pairs, &wrong, alike).into_iter().find(is_untried));
             let next = next.or_else(|| wrong.iter().copied().find(is_untried));
             return next.map(|k| vec![k]).ok_or(Cycle { pairs: wrong });
         }
@@ -101,15 +113,15 @@ impl ActiveSet {
     }
 }
 
-/// The closed pairs under pressure against which one in tension, the first of those that are
-/// wrong, may work: that whose multiplier is nearest to the opposite one first.
-fn opponents(pairs: &[Contender], wrong: &[usize]) -> Vec<usize> {
+/// The closed pairs under pressure on which a gap in tension, the first of those that are wrong,
+/// nearly depends: that with the most similar gradient first.
+fn opponents(pairs: &[Contender], wrong: &[usize], alike: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     let Some(&pulled) = wrong.iter().find(|&&k| pairs[k].active) else { return Vec::new() };
-    let mut pressed: Vec<usize> =
-        (0..pairs.len()).filter(|&k| pairs[k].active && pairs[k].lambda < 0.0).collect();
-    let rest = |k: usize| (pairs[k].lambda + pairs[pulled].lambda).abs();
-    pressed.sort_by(|&a, &b| rest(a).total_cmp(&rest(b)));
-    pressed
+    let pressed = (0..pairs.len()).filter(|&k| pairs[k].active && pairs[k].lambda < 0.0);
+    let mut alike: Vec<(f64, usize)> = pressed.map(|k| (alike(pulled, k), k)).collect();
+    alike.retain(|&(cosine, _)| cosine >= ALIKE);
+    alike.sort_by(|a, b| b.0.total_cmp(&a.0));
+    alike.into_iter().map(|(_, k)| k).collect()
 }
 
 #[cfg(test)]
@@ -130,7 +142,7 @@ mod tests {
             pair(true, 0.0, 1e-11),
             pair(false, -1e-13, 0.0),
         ];
-        assert_eq!(set.changes(&state, false).unwrap(), [0, 1]);
+        assert_eq!(set.changes(&state, false, |_, _| 1.0).unwrap(), [0, 1]);
     }
 
     #[test]
@@ -138,14 +150,14 @@ mod tests {
         let mut set = ActiveSet::new(0.0, true);
         let open = [pair(false, -1.0, 0.0)];
         let closed = [pair(true, 0.0, 1.0)];
-        assert_eq!(set.changes(&open, false).unwrap(), [0]);
-        assert!(set.changes(&closed, false).unwrap().is_empty());
-        assert_eq!(set.changes(&closed, true).unwrap(), [0]);
-        let _ = set.changes(&open, true);
+        assert_eq!(set.changes(&open, false, |_, _| 1.0).unwrap(), [0]);
+        assert!(set.changes(&closed, false, |_, _| 1.0).unwrap().is_empty());
+        assert_eq!(set.changes(&closed, true, |_, _| 1.0).unwrap(), [0]);
+        let _ = set.changes(&open, true, |_, _| 1.0);
         assert!(set.is_cautious());
         let mut named = false;
         for k in 0..4 {
-            named |= set.changes(if k % 2 == 0 { &closed } else { &open }, true).is_err();
+            named |= set.changes(if k % 2 == 0 { &closed } else { &open }, true, |_, _| 1.0).is_err();
         }
         assert!(named);
     }
@@ -178,7 +190,7 @@ mod tests {
         let mut active = [true, false];
         for _ in 0..12 {
             let state = solved(active);
-            for k in set.changes(&state, true).unwrap() {
+            for k in set.changes(&state, true, |_, _| 1.0).unwrap() {
                 active[k] = !active[k];
             }
         }

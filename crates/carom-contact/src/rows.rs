@@ -269,6 +269,16 @@ impl Row<'_> {
         self.entries().map(|(dof, slope)| slope * x[dof]).sum()
     }
 
+    /// Cosine of the angle between the gradients of two rows; 0 of an open one.
+    pub fn alike(&self, other: &Row) -> f64 {
+        let square = |row: &Row| row.gradient.iter().map(|slope| slope * slope).sum::<f64>();
+        let same = |(dof, slope): (usize, f64)| {
+            other.entries().filter(|(of, _)| *of == dof).map(|(_, of)| slope * of).sum::<f64>()
+        };
+        let lengths = (square(self) * square(other)).sqrt();
+        if lengths > 0.0 { self.entries().map(same).sum::<f64>() / lengths } else { 0.0 }
+    }
+
     /// Adds a multiple of the gradient ∇g to a force over all dofs.
     pub fn add_to(&self, factor: f64, force: &mut [f64]) {
         for (dof, slope) in self.entries() {

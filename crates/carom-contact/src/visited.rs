@@ -71,5 +71,6 @@ impl<S: Eq + Hash> Visited<S> {
     /// Clears the visited sets, for pairs that have changed themselves.
     pub(crate) fn restart(&mut self) {
         self.sets.clear();
+        self.restricted_at = None;
     }
 }

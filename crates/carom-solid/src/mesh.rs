@@ -302,8 +302,10 @@ impl Mesh {
     /// are connected.
     pub fn pieces(&self) -> Vec<usize> {
         let mut of: Vec<usize> = (0..self.nodes.len()).collect();
-        let root = |of: &[usize], mut node: usize| {
+        // Halves the chains that it follows.
+        let root = |of: &mut [usize], mut node: usize| {
             while of[node] != node {
+                of[node] = of[of[node]];
                 node = of[node];
             }
             node
@@ -311,7 +313,7 @@ impl Mesh {
         for cell in 0..self.cell_count() {
             let nodes = self.cell(cell);
             for pair in nodes.windows(2) {
-                let [a, b] = [pair[0], pair[1]].map(|node| root(&of, node));
+                let [a, b] = [pair[0], pair[1]].map(|node| root(&mut of, node));
                 let low = a.min(b);
                 let high = a.max(b);
                 of[high] = low;
@@ -319,7 +321,7 @@ impl Mesh {
                 pair.iter().for_each(|&node| of[node] = low);
             }
         }
-        (0..of.len()).map(|node| root(&of, node)).collect()
+        (0..of.len()).map(|node| root(&mut of, node)).collect()
     }
 
     /// Area in the plane, of cells with straight sides between their corners.

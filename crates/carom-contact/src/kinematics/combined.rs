@@ -245,9 +245,9 @@ impl Kinematics for Combined {
         part.area(node)
     }
 
-    fn is_in_plane_of_symmetry(&self, node: usize) -> bool {
+    fn in_plane_of_symmetry(&self, node: usize) -> Vec<usize> {
         let (part, node) = self.of(node);
-        part.is_in_plane_of_symmetry(node)
+        part.in_plane_of_symmetry(node)
     }
 
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {

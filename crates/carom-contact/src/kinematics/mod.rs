@@ -203,10 +203,11 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Whether a secondary node, given by index, stands for a coefficient of a pressure field in a
-    /// plane of symmetry, where no tangential traction acts.
-    fn is_in_plane_of_symmetry(&self, _node: usize) -> bool {
-        false
+    /// Global numbers of the nodes at which both sides meet a plane of symmetry, if a secondary node,
+    /// given by index, stands for the coefficient of a pressure field there: no tangential traction
+    /// acts in such a plane.
+    fn in_plane_of_symmetry(&self, _node: usize) -> Vec<usize> {
+        Vec::new()
     }
 
     /// Pressures at the nodes of the secondary side, where the pairs are coefficients of a pressure

@@ -6,6 +6,9 @@
 //! S = H(y_½)·(Δy − Δy_free),   force  λ∇g + Σ q_α H_α(y_½),   ∂S/∂y = H + ½ ∂H/∂yᵀ (Δy − Δy_free)
 //! ```
 //!
+//! where a part of a surface that faces nothing at y_½ has its slip at y. Momentum is conserved at
+//! either place, angular momentum at y_½.
+//!
 //! Δy_free = 0, except for a pair that was open at the step's start: what slips before it touches
 //! does not count. Its S is the velocity at the end of the stage, v(Δy) = v'·(Δy − Δy_free),
 //! divided by v'; on a spring, the share of Δy in which the gap is negative. The force of a contact
@@ -145,7 +148,7 @@ impl Equations<'_> {
         slips: &mut Rows,
     ) -> Result<Counted, ContactError> {
         let kinematics = &self.model.contacts[contact].kinematics;
-        let at = self.slipping(contact, pair, middle, increment, slips)?;
+        let at = self.measured_for_slip(contact, pair, middle, increment, slips)?;
         let part = self.part(contact, pair, gap, slips);
         let first = slips.len();
         kinematics.slip(&at.pair, at.end.as_deref().unwrap_or(middle), increment, slips)?;
@@ -160,7 +163,7 @@ impl Equations<'_> {
 
     /// A pair measured at the middle of the step, or at its end if it faces nothing before: beside
     /// an end of the primary a part of a surface gains its partner within the step.
-    pub(crate) fn slipping(
+    pub(crate) fn measured_for_slip(
         &self,
         contact: usize,
         pair: &Pair,
@@ -375,7 +378,7 @@ impl Equations<'_> {
         if self.stick_spring(contact, pair).is_none() {
             return Counted::Velocity;
         }
-        let start = self.gap_at_start(contact, pair, rows).unwrap_or(0.0);
+        let start = self.open_at_start(contact, pair, rows);
         Counted::Share(if start > 0.0 { (gap / (gap - start)).clamp(0.0, 1.0) } else { 1.0 })
     }
 
@@ -400,10 +403,14 @@ impl Equations<'_> {
     /// Share of the step after the touch of a pair that closes, which approaches with its velocity
     /// at the start, or at the mean one if that is larger.
     pub(crate) fn since_touch(&self, contact: usize, pair: &Pair, gap: Row, rows: &mut Rows) -> f64 {
-        // A part of a surface that faces nothing has no gap yet.
-        let start = self.gap_at_start(contact, pair, rows).ok().filter(|gap| gap.is_finite()).unwrap_or(0.0);
+        let start = self.open_at_start(contact, pair, rows);
         let approach = (-gap.along(&self.state.v)).max(start / self.duration);
         if start > 0.0 { 1.0 - start / (self.duration * approach) } else { 1.0 }
+    }
+
+    /// Gap of a pair at the step's start; 0 of a part of a surface that faces nothing there.
+    fn open_at_start(&self, contact: usize, pair: &Pair, rows: &mut Rows) -> f64 {
+        self.gap_at_start(contact, pair, rows).ok().filter(|gap| gap.is_finite()).unwrap_or(0.0)
     }
 
     /// Whether a pair was open at the step's start.

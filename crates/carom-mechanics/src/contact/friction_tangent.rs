@@ -26,8 +26,8 @@ impl Equations<'_> {
         let part = self.part(contact, pair, evaluation.rows[contact].row(p).gap, rows);
         let share = if let Counted::Share(share) = part { share } else { 1.0 };
         let Evaluation { middle, at: Iterate { increment, .. }, .. } = evaluation;
-        // It was measured in the evaluation.
-        let at = self.slipping(contact, pair, middle, increment, rows).ok();
+        // The evaluation has measured it.
+        let at = self.measured_for_slip(contact, pair, middle, increment, rows).ok();
         for (tangent, row) in rows_of(slips, p).map(|row| slips.row(row)).enumerate() {
             let turned = &mut turned[tangent];
             let slope = &mut slopes[tangent];
@@ -38,8 +38,8 @@ impl Equations<'_> {
             let Some(at) = &at else { continue };
             let y = at.end.as_ref().unwrap_or(middle);
             kinematics.slip_derivative_into(&at.pair, y, increment, tangent, turned);
-            let share = if at.end.is_some() { 1.0 } else { 0.5 };
-            turned.iter_mut().for_each(|entry| *entry *= share);
+            let factor = if at.end.is_some() { 1.0 } else { 0.5 };
+            turned.iter_mut().for_each(|entry| *entry *= factor);
             let counted = row.entries().map(|(dof, _)| self.counted(dof, part, increment));
             for (turned, moved) in turned.chunks_exact(slope.len()).zip(counted) {
                 slope.iter_mut().zip(turned).for_each(|(slope, h)| *slope += h * moved);

@@ -256,10 +256,13 @@ impl<'a> ContactUpdate<'a> {
             };
             let contenders: Vec<Contender> =
                 pairs.iter().zip(evaluation.rows[k].iter()).map(contender).collect();
-            let changes = self.sets[k].changes(&contenders, settled).map_err(|cycle| Rejected::Cycle {
-                contact: contact.name.clone(),
-                nodes: cycle.pairs.iter().map(|&p| contact.node(&pairs[p])).collect(),
-            })?;
+            let rows = &evaluation.rows[k];
+            let alike = |p: usize, q: usize| rows.row(p).alike(&rows.row(q));
+            let changes =
+                self.sets[k].changes(&contenders, settled, alike).map_err(|cycle| Rejected::Cycle {
+                    contact: contact.name.clone(),
+                    nodes: cycle.pairs.iter().map(|&p| contact.node(&pairs[p])).collect(),
+                })?;
             for p in changes {
                 (pairs[p].active, pairs[p].lambda, changed) = (!pairs[p].active, 0.0, true);
                 (pairs[p].multiplier, pairs[p].tangential.before) = (0.0, [0.0; 2]);

@@ -78,12 +78,15 @@ impl Whole {
     }
 }
 
-/// The nodes of each piece, and of those together that ties connect, ascending.
+/// The nodes of each piece, and of those together that ties connect, ascending; each node of the
+/// carrier of an obstacle is one.
 fn pieces(model: &Model) -> Vec<Vec<usize>> {
     let nodes = |group: Vec<Piece>| {
         let mut nodes: Vec<usize> = group.into_iter().flat_map(|piece| piece.nodes).collect();
         nodes.sort_unstable();
         nodes
     };
-    tied_pieces(&model.parts, &model.points).into_iter().map(nodes).collect()
+    let of_bodies = tied_pieces(&model.parts, &model.points).into_iter().map(nodes);
+    let carriers = model.parts.iter().filter(|part| part.is_rigid());
+    of_bodies.chain(carriers.flat_map(|part| part.nodes().map(|node| vec![node]))).collect()
 }

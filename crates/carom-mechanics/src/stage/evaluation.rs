@@ -63,7 +63,7 @@ pub(crate) struct Evaluation {
     /// Directions of the contact forces where they are not the gradients of these rows, a row per
     /// pair: discrete gradients, or turned by friction; empty for other contacts.
     pub turned: Vec<Rows>,
-    /// H at the middle of the step, with the slip S as gaps, a row per pair and tangent; empty
+    /// H where slips are measured, with the slip S as gaps, a row per pair and tangent; empty
     /// without friction.
     pub slips: Vec<Rows>,
     /// y_½ = y_s + d/2; empty without friction.

@@ -194,8 +194,12 @@ pub(crate) fn accelerate(
             }
         };
         let contenders: Vec<Contender> = pairs.iter().enumerate().map(contender).collect();
+        let alike = |i: usize, j: usize| {
+            let [one, other] = [pairs[i], pairs[j]].map(|(k, p)| gaps[k].row(p));
+            one.alike(&other)
+        };
         let pulls = |i: &usize| held[*i] && contenders[*i].lambda > 0.0;
-        let changes = if round < ROUNDS { set.changes(&contenders, true).ok() } else { None };
+        let changes = if round < ROUNDS { set.changes(&contenders, true, alike).ok() } else { None };
         let changes = changes.unwrap_or_else(|| (0..pairs.len()).filter(pulls).collect());
         if changes.is_empty() {
             for (&(k, p), lambda) in closed.places.iter().zip(&motion.normal) {

@@ -21,6 +21,8 @@ pub(super) struct Bodies<'a> {
     pub(super) parts: &'a [BodyInstance],
     pub(super) reference: &'a [f64],
     pub(super) fixed: &'a [bool],
+    /// Whether a support moves a dof.
+    pub(super) moved: &'a [bool],
 }
 
 /// A side of a contact.
@@ -198,6 +200,12 @@ impl Bodies<'_> {
             self.reference,
             single,
         )
+    }
+
+    /// Whether a support moves a node.
+    pub(super) fn moves(&self, node: usize) -> bool {
+        let dimension = self.case.dimension;
+        self.moved[dimension * node..dimension * (node + 1)].contains(&true)
     }
 
     fn is_fixed(&self) -> impl Fn(usize, usize) -> bool {

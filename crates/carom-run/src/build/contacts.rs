@@ -26,11 +26,11 @@ pub(super) fn contacts(
     case: &Case,
     parts: &[BodyInstance],
     obstacles: &[Moving],
-    [massless, fixed]: [&[bool]; 2],
+    [massless, fixed, moved]: [&[bool]; 3],
     problems: &mut Vec<Problem>,
 ) -> Vec<Contact> {
     let reference: Vec<f64> = parts.iter().flat_map(|part| part.body.mesh().nodes.flat()).copied().collect();
-    let bodies = Bodies { case, parts, reference: &reference, fixed };
+    let bodies = Bodies { case, parts, reference: &reference, fixed, moved };
     let made = (0..case.contacts.len()).map(|k| contact(k, &bodies, obstacles, massless));
     let contacts: Vec<_> =
         made.filter_map(|made| made.map_err(|problem| problems.push(problem)).ok()).collect();
@@ -101,10 +101,12 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
                 *limit = kinematics.area(node).map_or(of_node, |area| shear * case.thickness * area);
             }
         }
-        let in_plane = (0..rubbing.len()).filter(|&node| kinematics.is_in_plane_of_symmetry(node));
-        for node in in_plane {
-            friction.limits.resize(rubbing.len(), f64::INFINITY);
-            friction.limits[node] = 0.0;
+        for node in 0..rubbing.len() {
+            let in_plane = kinematics.in_plane_of_symmetry(node);
+            if !in_plane.is_empty() && !in_plane.iter().any(|&node| bodies.moves(node)) {
+                friction.limits.resize(rubbing.len(), f64::INFINITY);
+                friction.limits[node] = 0.0;
+            }
         }
         friction.edges = kinematics.secondary().len() - rubbing.len();
         if spec.enforcement == Enforcement::Penalty {

@@ -89,7 +89,9 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let weights = Weights { case, parts: &parts, obstacles: &obstacles, mass: &mass };
     let gravity = weights.constant();
     problems.extend(weights.add_varying(&mut loads));
-    let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed], &mut problems);
+    let mut moved = vec![false; dofs];
+    motions.dofs().for_each(|dof| moved[dof] = true);
+    let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed, &moved], &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let unconstrained = free_motions(&parts, &fixed, &ties.points);
     if case.time.scheme.is_static() {

@@ -514,3 +514,43 @@ fn half_a_model_with_friction_moves_like_the_whole() {
     let [one, other] = [&whole, &half].map(|sim| sim.state().impulses[0][1]);
     assert!((one / (2.0 * other) - 1.0).abs() < 1e-5, "{one} {other}");
 }
+
+/// A block that its end face pulls over a rigid floor or a table, and one that a table is pulled
+/// under: friction carries μ times the pressing force, all of it. A face that moves is no plane of
+/// symmetry.
+#[test]
+fn a_face_that_is_pulled_rubs_up_to_its_end() {
+    let pulled = "[[support]]\non = [\"b.right\"]\nmove = { x = \"if(t < 1, 0, 0.1*(t - 1))\" }";
+    let held = "[[support]]\non = [\"b.left\"]\nfix = [\"x\"]\n\
+                [[support]]\non = [\"p.bottom\"]\nfix = [\"y\"]\n\
+                [[support]]\non = [\"p.left\"]\nmove = { x = \"if(t < 1, 0, -0.05*(t - 1))\" }";
+    let table = "[[body]]\nname = \"p\"\nmaterial = \"m\"\nelement = \"Q4\"\n\
+                 mesh = { shape = \"rectangle\", min = [0.0, -0.5], max = [2.0, 0.0], cells = [7, 2] }";
+    let floor = "{ plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }";
+    for (supports, other, primary) in [(pulled, "", floor), (held, table, "\"p.top\"")] {
+        let text = format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.0 }}]
+            load = [{{ on = ["b.top"], traction = ["0", "-1"] }}]
+            time = {{ end = 2.0, step = 0.2, scheme = {{ kind = "static" }} }}
+            [[body]]
+            name = "b"
+            material = "m"
+            element = "Q4"
+            mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.5], cells = [4, 2] }}
+            {other}
+            {supports}
+            [[contact]]
+            name = "floor"
+            secondary = "b.bottom"
+            primary = {primary}
+            method = "mortar"
+            mu = 0.5
+            "#
+        );
+        let end = finish(simulation(&text, &[""; 0]));
+        let force: f64 = end.state().pairs[0].iter().map(|pair| pair.tangential.traction[0]).sum();
+        assert!((force.abs() / 0.5 - 1.0).abs() < 2e-3, "{primary}: {force}");
+    }
+}

@@ -21,8 +21,9 @@ pub(super) struct Joint {
     pub(super) facets: [usize; 2],
     /// Global number of their common node.
     pub(super) node: usize,
-    /// Normal and unit tangent of the first facet less those of the second.
+    /// Unit normal of the first facet less that of the second.
     pub(super) normal: Vector<2>,
+    /// Unit tangent of the first facet less that of the second.
     pub(super) tangent: Vector<2>,
     /// Weight over [g'].
     pub(super) weight: f64,

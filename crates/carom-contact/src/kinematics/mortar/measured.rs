@@ -16,12 +16,15 @@ use super::joint::Joint;
 use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
 use super::sides::Mortar;
-use super::turned::{Own, Turned};
+use super::turned::{Own, Turned, faces};
 use crate::kinematics::projection::{Facet, FacetPoint};
 use crate::places::Places;
 
 /// Share of the area of a multiplier that must face the primary for a pressure of its own.
 const COVERED: f64 = 0.05;
+
+/// Jump of a unit normal that is round-off.
+const STRAIGHT: f64 = 1e-10;
 
 impl Mortar {
     /// Calls a function with the secondary facets at positions `y`, of which those of some parts
@@ -111,10 +114,23 @@ impl Mortar {
         let normal = before_it.normal - after_it.normal;
         let along = |at: &FacetPoint| at.tangent * at.measure.recip();
         let tangent = along(&before_it) - along(&after_it);
-        let rate = normal.dot(&own.at(y, at.xi).tangent);
+        if normal.norm() < STRAIGHT {
+            return None;
+        }
+        let place = own.at(y, at.xi);
+        let faces =
+            0.5 * [&before_it, &after_it].map(|at| faces(place.normal, at.normal)).iter().sum::<f64>();
+        let rate = normal.dot(&place.tangent);
         let node = before.nodes[usize::from(at.forward)];
-        let weight = own.at(self.reference(), at.xi).measure / rate;
-        weight.is_finite().then_some(Joint { xi: at.xi, facets: at.facets, node, normal, tangent, weight })
+        let weight = faces * own.at(self.reference(), at.xi).measure / rate;
+        (faces > 0.0 && weight.is_finite()).then_some(Joint {
+            xi: at.xi,
+            facets: at.facets,
+            node,
+            normal,
+            tangent,
+            weight,
+        })
     }
 
     /// For each polynomial of a facet, with its multipliers, the polynomial that carries it:

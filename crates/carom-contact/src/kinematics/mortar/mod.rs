@@ -179,8 +179,8 @@ impl Kinematics for Mortar {
         Some(self.multipliers[multiplier].area)
     }
 
-    fn is_in_plane_of_symmetry(&self, multiplier: usize) -> bool {
-        self.meets_plane_of_symmetry(multiplier)
+    fn in_plane_of_symmetry(&self, multiplier: usize) -> Vec<usize> {
+        self.nodes_in_plane_of_symmetry(multiplier)
     }
 
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {

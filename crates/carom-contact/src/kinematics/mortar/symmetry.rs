@@ -13,51 +13,57 @@ use crate::kinematics::surface::Surface;
 /// Distance from a plane, relative to the size of the model, and cosine that count as zero.
 const FLAT: f64 = 1e-9;
 
-/// A place at which a side meets a plane of symmetry, with a normal of the plane.
-struct Meeting {
+/// The end of a side in a plane of symmetry, with a normal of the plane.
+struct EndInPlane {
+    node: usize,
     place: Vector<2>,
     normal: Vector<2>,
 }
 
 impl Mortar {
-    /// Whether a multiplier stands for the pressure in a plane of symmetry of both sides.
-    pub(super) fn meets_plane_of_symmetry(&self, multiplier: usize) -> bool {
-        self.multipliers[multiplier].parts.iter().any(|part| {
-            let ends = [(0, false), (self.degree, true)];
-            let at_end = ends.into_iter().filter(|(polynomial, _)| *polynomial == part.polynomial);
-            let mut meetings =
-                at_end.filter_map(|(_, forward)| self.meeting(&self.secondary, part.facet, forward));
-            meetings.any(|meeting| self.is_symmetric(&meeting))
-        })
+    /// The nodes of both sides in the plane of symmetry in which a multiplier stands for the
+    /// pressure; of an obstacle none.
+    pub(super) fn nodes_in_plane_of_symmetry(&self, multiplier: usize) -> Vec<usize> {
+        let ends = self.multipliers[multiplier].parts.iter().flat_map(|part| {
+            let ends = [(0, false), (self.degree, true)].into_iter();
+            let at_end = ends.filter(|(polynomial, _)| *polynomial == part.polynomial);
+            at_end.filter_map(|(_, forward)| self.end_in_plane(&self.secondary, part.facet, forward))
+        });
+        ends.filter_map(|end| self.with_opposite(&end)).next().unwrap_or_default()
     }
 
-    /// Where a facet of a side meets a plane of symmetry in the reference configuration.
-    fn meeting(&self, side: &Surface, facet: usize, forward: bool) -> Option<Meeting> {
+    /// The end of a facet of a side, if it lies in a plane of symmetry in the reference
+    /// configuration.
+    fn end_in_plane(&self, side: &Surface, facet: usize, forward: bool) -> Option<EndInPlane> {
         let next = side.neighbour(facet, forward).filter(|&next| side.is_mirror(next))?;
         let node = side.facet(facet).nodes[usize::from(forward)];
         let normal = side.facet(next).at(self.reference(), 0.0).normal;
-        Some(Meeting { place: self.reference().at(node), normal })
+        Some(EndInPlane { node, place: self.reference().at(node), normal })
     }
 
-    /// Whether the opposite side is symmetric about the same plane.
-    fn is_symmetric(&self, at: &Meeting) -> bool {
+    /// The node of an end with that of the opposite side in the same plane, if that is symmetric
+    /// about it, too.
+    fn with_opposite(&self, end: &EndInPlane) -> Option<Vec<usize>> {
         match &self.opposite {
             Opposite::Side(primary) => {
                 let side = &primary.surface;
                 let ends = (0..side.facets()).flat_map(|facet| [(facet, false), (facet, true)]);
-                let mut meetings = ends.filter_map(|(facet, forward)| self.meeting(side, facet, forward));
-                meetings.any(|other| {
-                    let apart = other.place - at.place;
-                    apart.dot(&at.normal).abs() <= FLAT * apart.norm().max(at.place.norm())
-                })
+                let mut ends = ends.filter_map(|(facet, forward)| self.end_in_plane(side, facet, forward));
+                let other = ends.find(|other| {
+                    let apart = other.place - end.place;
+                    let size = apart.norm().max(end.place.norm());
+                    let is_parallel = 1.0 - other.normal.dot(&end.normal).abs() <= FLAT;
+                    is_parallel && apart.dot(&end.normal).abs() <= FLAT * size
+                })?;
+                Some(vec![end.node, other.node])
             }
             Opposite::Obstacle(obstacle) => {
-                let [x, y] = at.place.0;
-                let gap = obstacle.gap_of_point([x, y, 0.0], &self.reference);
-                let along =
-                    |direction: [f64; 3]| direction[0] * at.normal.0[0] + direction[1] * at.normal.0[1];
-                // One that is carried may move across the plane.
-                obstacle.carriers().is_empty() && gap.is_some_and(|gap| along(gap.direction()).abs() <= FLAT)
+                let [x, y] = end.place.0;
+                let [along, across, _] = obstacle.gap_of_point([x, y, 0.0], &self.reference)?.direction();
+                let cosine = along * end.normal.0[0] + across * end.normal.0[1];
+                // An obstacle that is carried may move across the plane.
+                let is_symmetric = obstacle.carriers().is_empty() && cosine.abs() <= FLAT;
+                is_symmetric.then(|| vec![end.node])
             }
         }
     }

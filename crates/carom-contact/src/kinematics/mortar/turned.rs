@@ -38,6 +38,11 @@ fn weight(cosine: f64) -> [f64; 3] {
     [x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x) * rate, inner * (6.0 - 12.0 * x) * rate * rate]
 }
 
+/// Weight φ of a pair of unit normals.
+pub(super) fn faces(own: Vector<2>, other: Vector<2>) -> f64 {
+    weight(-own.dot(&other))[0]
+}
+
 /// A tangent t of the secondary side, not normalised, with the unit normal there.
 #[derive(Clone, Copy)]
 pub(super) struct Own {

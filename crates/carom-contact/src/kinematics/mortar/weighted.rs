@@ -237,10 +237,15 @@ impl Mortar {
                     let carried = (0..=self.degree).filter(|&number| carriers[number] == polynomial);
                     let value = carried.map(|number| bernstein(self.degree, number, joint.xi)).sum::<f64>();
                     let of_point = own.nodes.iter().copied().zip(own.shape.at(joint.xi).values);
-                    let by = of_point.chain([(joint.node, -1.0)]);
-                    let places: Vec<(usize, f64)> =
-                        by.filter_map(|(node, weight)| Some((place(node)?, weight))).collect();
-                    joint.add_to(value / multiplier.area, jump(joint), &places, size, matrix);
+                    let mut places = [(0, 0.0); NODES + 1];
+                    let mut count = 0;
+                    for (node, weight) in of_point.chain([(joint.node, -1.0)]) {
+                        if let Some(place) = place(node) {
+                            places[count] = (place, weight);
+                            count += 1;
+                        }
+                    }
+                    joint.add_to(value / multiplier.area, jump(joint), &places[..count], size, matrix);
                 }
             }
         });
