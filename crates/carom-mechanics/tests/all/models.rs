@@ -1,11 +1,10 @@
-//! Small models from plain numbers, for unit tests.
+//! Small models from plain numbers.
 
 use carom_contact::{Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Surface, Unilateral};
-use carom_solid::{Law, LoadedSide, Mesh, body};
-
-use crate::model::{
+use carom_mechanics::model::{
     AllowedDepths, BodyInstance, Contact, Loads, Mass, Model, Motions, Point, Points, gap_tolerance,
 };
+use carom_solid::{Law, LoadedSide, Mesh, body};
 
 /// Bodies of one material, with consecutive node numbers.
 pub(crate) fn parts(meshes: impl IntoIterator<Item = Mesh>, law: Law, density: f64) -> Vec<BodyInstance> {

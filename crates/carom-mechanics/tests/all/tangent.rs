@@ -3,29 +3,25 @@
 use carom_algebra::sums::dot;
 use carom_contact::{Along, ConservingUnilateral, FrictionState, Pairing, Penalty, Rows, inner};
 use carom_formula::Formula;
-use carom_solid::{Element, Law, generate};
+use carom_mechanics::contact::constraints::Constraints;
+use carom_mechanics::linear::direct::Direct;
+use carom_mechanics::linear::iterative::Iterative;
+use carom_mechanics::linear::matrices::Matrices;
+use carom_mechanics::linear::preconditioner::Preconditioner;
+use carom_mechanics::model::{Friction, Load, Loads, LoadsAt, Model, Motion, Motions};
+use carom_mechanics::stage::equations::Equations;
+use carom_mechanics::stage::evaluation::{Iterate, Spare};
+use carom_mechanics::stage::linear_problem::LinearProblem;
+use carom_mechanics::start::{Inertia, press, start};
+use carom_mechanics::velocity::active_rows::measure_all;
+use carom_mechanics::{
+    Implicit, Linear, Materials, Settings, State, Stepper, Tangent as FactorRule, Timings, Workspace,
+};
+use carom_solid::{Configuration, Element, Law, generate};
 use carom_time::schemes::energy_momentum::EnergyMomentum;
 use carom_time::{ForceRule, Kernel, Memory, Scheme, Stage};
 
-use crate::contact::constraints::Constraints;
-use crate::linear::direct::Direct;
-use crate::linear::iterative::Iterative;
-use crate::linear::matrices::Matrices;
-use crate::linear::preconditioner::Preconditioner;
-use crate::materials::Materials;
-use crate::model::{Friction, Load, Loads, LoadsAt, Model, Motion, Motions};
-use crate::settings::{Linear, Settings, Tangent as FactorRule};
-use crate::stage::equations::Equations;
-use crate::stage::evaluation::{Iterate, Spare};
-use crate::stage::linear_problem::LinearProblem;
-use crate::start::{Inertia, press, start};
-use crate::state::State;
-use crate::stepper::{Implicit, Stepper};
-use crate::testing::{contact, loaded, model, nodes, parts, tied};
-use crate::timings::Timings;
-use crate::velocity::active_rows::measure_all;
-use crate::workspace::Workspace;
-use carom_solid::Configuration;
+use crate::models::{contact, loaded, model, nodes, parts, tied};
 
 /// An iterate with its tangent.
 struct Tangent<'a> {
@@ -69,7 +65,7 @@ impl<'a> Tangent<'a> {
         equations.model.points.carry(&mut change);
         let now = equations.evaluate(at.clone(), spare, timings).unwrap();
         let [mut forces, gaps] =
-            LinearProblem::product(equations, &now, rows, [change, multipliers.to_vec()]);
+            LinearProblem::product(equations, &now, rows, [change, multipliers.to_vec()]).unwrap();
         equations.model.points.gather(&mut forces);
         free.iter().map(|&dof| forces[dof]).chain(gaps).collect()
     }
