@@ -1,5 +1,6 @@
-use super::*;
-use crate::{Bound, Column, History};
+//! Comparison of a record with expected values.
+
+use carom_record::{Bound, Column, Deviation, Expect, History, Norm};
 
 fn history(columns: &[(&str, Vec<f64>)]) -> History {
     let column = |name: &str| Column {

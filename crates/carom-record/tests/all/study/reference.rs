@@ -1,6 +1,9 @@
 //! References by hand.
 
-use super::*;
+use carom_record::metrics::Metric;
+use carom_record::study::levels::Level;
+use carom_record::study::reference::{Reference, Standing};
+use carom_record::study::trajectory::Trajectory;
 
 /// Uncertainty after a last difference of two halved levels with the order 1, which counts as 2/3.
 fn after(last: f64) -> f64 {

@@ -1,10 +1,10 @@
 //! A record whose metrics are calculated by hand: free flight, a parabolic pulse of the contact
 //! force, free flight.
 
-use super::samples::{peak_mean, roughness};
-use super::*;
-use crate::question::{Question, Window};
-use crate::{Column, History};
+use carom_record::metrics::samples::{peak_mean, roughness};
+use carom_record::metrics::{Episode, all, episodes, striker};
+use carom_record::question::{Question, Window};
+use carom_record::{Column, History};
 
 fn evaluate(history: &History, what: &str) -> Result<f64, String> {
     Ok(Question::parse(what)?.answer(history, Window::default())?)

@@ -1,14 +1,15 @@
 //! Rankings and recommendations of studies that are written down by hand.
 
-use super::*;
-use crate::Machine;
-use crate::metrics::Distance;
-use crate::metrics::Metric;
-use crate::study::StudySource;
-use crate::study::compared::Deviation;
-use crate::study::design::{Design, Kind as Matched, MemberOf, Role};
-use crate::study::ensemble::{Ensemble, Member};
-use crate::study::reference::{Known, Level, Trajectory};
+use carom_record::metrics::{Distance, Metric};
+use carom_record::study::compared::{Compared, Deviation};
+use carom_record::study::design::{Design, Goal, Kind as Matched, MemberOf, Role};
+use carom_record::study::ensemble::{Ensemble, Member};
+use carom_record::study::measure::Errors;
+use carom_record::study::ranking::{Ranking, Ranks};
+use carom_record::study::reference::{Known, Level, Reference, Trajectory};
+use carom_record::study::verdict::Confidence;
+use carom_record::study::{Arm, Row, StudyManifest, StudySource};
+use carom_record::{Machine, Status};
 
 /// A run: its method and level, its energy error (the measure of the goal `energy`, which should be
 /// 0), and its counted cost.

@@ -1,7 +1,8 @@
 //! How often a run flushes to the disk.
 
-use super::*;
-use crate::{Block, Cell, Column, Facts, Source};
+use std::time::Duration;
+
+use carom_record::{Block, Cell, Column, Facts, FieldSet, Manifest, RunWriter, Source, Status};
 
 /// A short run flushes its start and its end, however many checkpoints and fields it has; one
 /// that may be resumed flushes its fields, too; and one that takes longer, every checkpoint
@@ -25,7 +26,7 @@ fn flushes_do_not_grow_with_fields_and_checkpoints() {
             vec![column("time")],
             1,
         );
-        let before = files::FLUSHES.get();
+        let before = carom_record::flushes();
         let mut writer = RunWriter::create(&scratch.path().join("run"), &manifest, b"0").unwrap();
         writer.flush_interval(interval);
         let body = Block { body: "b".into(), cell: Cell::Curve, degree: 1, connectivity: vec![0, 1] };
@@ -38,7 +39,7 @@ fn flushes_do_not_grow_with_fields_and_checkpoints() {
         }
         manifest.status = status;
         writer.finish(&mut manifest).unwrap();
-        files::FLUSHES.get() - before
+        carom_record::flushes() - before
     };
     let finished = flushes(Status::Finished, Duration::MAX);
     assert!(finished <= 20, "{finished}");
