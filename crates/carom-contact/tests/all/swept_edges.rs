@@ -2,12 +2,12 @@
 //! contact.
 
 use carom_algebra::{Mat, Vector};
+use carom_contact::kinematics::space::patch::cross;
+use carom_contact::{SpaceHit, SweptEdges};
 use carom_solid::shape::line_shape;
 
-use super::patch_tests::rotation;
-use super::tests::Numbers;
-use super::*;
-use crate::kinematics::space::cross;
+use crate::swept::Numbers;
+use crate::swept_patches::rotation;
 
 /// Nodes of A and B at the start and at the end.
 #[derive(Clone, Debug)]

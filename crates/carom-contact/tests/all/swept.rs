@@ -2,18 +2,18 @@
 
 use std::f64::consts::TAU;
 
+use carom_algebra::Vector;
+use carom_contact::{Crossings, Swept, SweptTest};
 use carom_solid::FacetShape;
 use carom_solid::shape::line_shape;
-
-use super::*;
 
 const SHAPES: [FacetShape; 3] = [FacetShape::L2, FacetShape::L3, FacetShape::L4];
 
 /// Deterministic numbers in −1..1 (SplitMix64).
-pub(super) struct Numbers(pub(super) u64);
+pub(crate) struct Numbers(pub(crate) u64);
 
 impl Numbers {
-    pub(super) fn next(&mut self) -> f64 {
+    pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

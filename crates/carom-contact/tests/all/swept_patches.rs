@@ -1,10 +1,11 @@
 //! Exact queries in space, an oracle of many starts of Newton's method, and the degenerate ones.
 
-use carom_algebra::Mat;
+use carom_algebra::{Mat, Vector};
+use carom_contact::kinematics::space::patch::cross;
+use carom_contact::{SpaceHit, SweptPatch};
 use carom_solid::FacetShape;
 
-use super::tests::Numbers;
-use super::*;
+use crate::swept::Numbers;
 
 const SHAPES: [FacetShape; 5] =
     [FacetShape::T3, FacetShape::T6, FacetShape::T10, FacetShape::Q4, FacetShape::Q9];
@@ -102,7 +103,7 @@ impl Query {
                 xi = [xi[0] + step[1], xi[1] + step[2]];
             }
             let [f, by_theta, by_xi, by_eta] = self.at(xi, theta);
-            let inwards = by_theta.dot(&crate::kinematics::space::cross(by_xi, by_eta)) < 0.0;
+            let inwards = by_theta.dot(&cross(by_xi, by_eta)) < 0.0;
             if f.norm() < 1e-12 && (0.0..=1.0).contains(&theta) && inside(xi) && inwards {
                 found.push(theta);
             }
@@ -113,7 +114,7 @@ impl Query {
 }
 
 /// The rotation of a random unit quaternion.
-pub(super) fn rotation(numbers: &mut Numbers) -> Mat<3> {
+pub(crate) fn rotation(numbers: &mut Numbers) -> Mat<3> {
     let q: [f64; 4] = std::array::from_fn(|_| numbers.next());
     let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     let [w, x, y, z] = q.map(|q| q / norm);

@@ -1,6 +1,9 @@
-use carom_solid::FacetShape;
+//! Which parts of a body's boundary in space can meet each other.
 
-use super::*;
+use carom_contact::kinematics::space::folds::{PatchFolds, update_normals};
+use carom_contact::kinematics::space::patch::place;
+use carom_contact::{Boundary, Side};
+use carom_solid::FacetShape;
 
 /// A prism over a polygon, counter-clockwise, from z = 0 to 1; its ends are divided into these
 /// quadrilaterals. Facet k lies over the edge from corner k.
