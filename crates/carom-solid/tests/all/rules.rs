@@ -13,12 +13,10 @@
 #![allow(clippy::print_stdout)]
 
 use carom_algebra::{Mat, Vector};
-
-use crate::generate;
-use crate::material::{Material, NeoHookean};
-use crate::mesh::{Element, Mesh};
-use crate::reference::gradient;
-use crate::shape::{Domain, Hex8, Hex27, Quad4, Quad9, Shape, Tet10, Tet20, Tri6, Tri10};
+use carom_solid::material::{Material, NeoHookean};
+use carom_solid::reference::gradient;
+use carom_solid::shape::{Domain, Hex8, Hex27, Quad4, Quad9, Shape, Tet10, Tet20, Tri6, Tri10};
+use carom_solid::{Element, Mesh, generate};
 
 const LAW: NeoHookean = NeoHookean { lambda: 5.0, mu: 1.0 };
 
