@@ -7,7 +7,7 @@
 //! contain it, all of them in at least 8 of 10 set-ups, and the median half-width must be at most
 //! three times the error.
 //!
-//!     cargo test --release -p carom-study --test coverage -- --ignored --nocapture
+//!     cargo test --release -p carom-study --test all coverage -- --ignored --nocapture
 //!
 //! The studies are kept in the folder `CAROM_COVERAGE`, if it is given, and not computed again if
 //! they are there.

@@ -1,7 +1,5 @@
 //! The drawing of the set-up and its table, in the plane and in space.
 
-#![allow(clippy::unwrap_used)]
-
 use std::fs;
 use std::path::Path;
 

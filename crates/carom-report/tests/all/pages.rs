@@ -1,16 +1,14 @@
 //! The report of a synthetic run is complete, self-contained, well-formed, and escapes all text
 //! from the user.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
 use std::fs;
 use std::path::Path;
 
 use carom_record::{Block, Cell, Column, ContactRow, FieldSet, PointArray, RunWriter};
 use carom_report::report;
 use serde_json::json;
+
+use super::common;
 
 /// Number of elements of an XML text, which must be well-formed.
 fn elements(text: &str) -> usize {

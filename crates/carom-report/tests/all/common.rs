@@ -1,8 +1,6 @@
 //! A synthetic run that looks like a half disc striking a block: smooth formulas instead of a
 //! simulation, written by the real writer.
 
-#![allow(clippy::unwrap_used)]
-
 use std::f64::consts::PI;
 use std::path::Path;
 
