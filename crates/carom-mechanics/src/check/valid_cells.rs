@@ -2,11 +2,11 @@
 //! nodes in it, everywhere and not only at its quadrature points.
 //!
 //! A check of all cells also gives the distance that nodes may move, relative to their body, before
-//! one of them can become invalid ([`Body::cell_margin`](carom_solid::Body::cell_margin)). Until a
-//! node has moved so far, a step costs one pass over the positions. A result does not depend on
-//! when cells were checked: within the margin, the check would succeed. What lies between two
-//! positions within the margin is within it, too: it is convex. Paths are therefore examined only
-//! of cells whose nodes left it.
+//! one of them can become invalid (`cell_margin` of [`Body`](carom_solid::Body)). Until a node has
+//! moved so far, a step costs one pass over the positions. A result does not depend on when cells
+//! were checked: within the margin, the check would succeed. What lies between two positions within
+//! the margin is within it, too: it is convex. Paths are therefore examined only of cells whose
+//! nodes left it.
 
 use crate::cells;
 use crate::model::{BodyInstance, Model};

@@ -4,7 +4,7 @@
 //!
 //! The shortest contact of elastic bodies lasts two crossings of a pressure wave, to the far side
 //! of the thinner body and back. In contact the first frames are therefore so close that
-//! [`FIRST`] of them fit into this time; the distance doubles whenever as many have been written,
+//! `FIRST` of them fit into this time; the distance doubles whenever as many have been written,
 //! until it is that of the regular frames.
 
 use carom_case::Case;
