@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Cycles of imports between the files of a crate, and dependencies between crates that are not those of
-the table in ARCHITECTURE.md.
+"""Cycles of imports between the files of a crate, dependencies between crates that are not those of
+the table in ARCHITECTURE.md, and tests in libraries whose manifest has `test = false`, which nothing
+would run.
 
     scripts/imports.py [CRATE...]
 
@@ -213,6 +214,15 @@ def dependencies(directory):
     return {name for name in manifest.get("dependencies", {}) if re.match(r"carom\b", name)}
 
 
+def lost_tests(directory):
+    """The files of a library with tests that Cargo does not compile."""
+    manifest = tomllib.loads((directory / "Cargo.toml").read_text(encoding="utf-8"))
+    if manifest.get("lib", {}).get("test", True):
+        return []
+    files = [path for path in sorted(directory.glob("src/**/*.rs")) if "bin" not in path.relative_to(directory).parts]
+    return [path for path in files if re.search(r"#\[(cfg\(test\)|test)\]", path.read_text(encoding="utf-8"))]
+
+
 def documented(architecture):
     """The dependencies of each crate whose row in the table of ARCHITECTURE.md lists them by name."""
     rows = re.findall(r"^\| `(carom-\w+)` \|.*\| ([\w, –]+) \|$", architecture, re.MULTILINE)
@@ -233,6 +243,9 @@ def main():
         if told.get(directory.name, found) != found:
             wrong += 1
             print(f"{directory.name} depends on {sorted(found)}, ARCHITECTURE.md says {sorted(told[directory.name])}")
+        for path in lost_tests(directory):
+            wrong += 1
+            print(f"{short(path)}: its tests are not compiled, {directory.name} has test = false")
         arrows = Crate(directory).arrows()
         for knot in cycles(arrows):
             wrong += 1
@@ -242,7 +255,7 @@ def main():
                     print(f"    {short(a)} -> {short(b)}: {', '.join(sorted(names))}")
     if wrong:
         sys.exit(1)
-    print(f"no cycles between files, and the dependencies of {len(told)} crates are those of ARCHITECTURE.md")
+    print(f"no cycles between files, no lost tests, and the dependencies of {len(told)} crates are those of ARCHITECTURE.md")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,16 @@
 //! Linear algebra of Carom: small tensors, sparse symmetric systems, finite-difference checks.
 
 mod condensed;
-mod cone;
+#[doc(hidden)]
+pub mod cone;
 mod difference;
 mod elimination;
-mod forest;
+#[doc(hidden)]
+pub mod forest;
 mod front;
 mod linear;
-mod mixing;
+#[doc(hidden)]
+pub mod mixing;
 mod node_matrix;
 mod pattern;
 mod pivots;
@@ -20,7 +23,8 @@ mod simd;
 mod small;
 mod substitution;
 pub mod sums;
-mod symbolic;
+#[doc(hidden)]
+pub mod symbolic;
 mod threads;
 
 pub use condensed::Condensed;

@@ -112,17 +112,7 @@ pub(crate) fn grouped_ordering(pattern: &Pattern, groups: &[usize]) -> Result<Ve
     Ok(order.iter().flat_map(|&g| members[g].iter().copied()).collect())
 }
 
-fn memory(space: StackReq) -> Result<MemBuffer, FaerError> {
+/// Memory for a factorisation.
+pub fn memory(space: StackReq) -> Result<MemBuffer, FaerError> {
     MemBuffer::try_new(space).map_err(|_| FaerError::OutOfMemory)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_lack_of_memory_is_told_apart() {
-        let error = memory(StackReq::new::<u8>(usize::MAX >> 2)).err();
-        assert!(matches!(error, Some(FaerError::OutOfMemory)), "{error:?}");
-    }
 }

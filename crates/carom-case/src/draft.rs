@@ -18,7 +18,7 @@ use crate::tree::{Entry, Node};
 /// One simulation of impact or contact of deformable bodies.
 #[derive(Default, Keys)]
 #[keys(name = "the case", lenient)]
-pub(crate) struct Draft {
+pub struct Draft {
     /// Title of figures and report pages. Default: the name of the file.
     #[key(example = "\"Two bars\"")]
     pub(crate) title: Option<String>,

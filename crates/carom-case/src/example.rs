@@ -73,7 +73,7 @@ impl Names {
 
 /// An example with its vectors in another dimension: along z there is nothing, or one more number
 /// of cells; a single component is one that is not zero.
-fn in_dimension(example: &str, dimension: Option<usize>) -> String {
+pub fn in_dimension(example: &str, dimension: Option<usize>) -> String {
     let Some(dimension) = dimension else { return example.to_owned() };
     let mut out = String::new();
     for (i, part) in example.split('[').enumerate() {
@@ -108,7 +108,7 @@ fn is_component(text: &str) -> bool {
 }
 
 /// Sides of the built-in shapes; first the one most likely to be in contact.
-fn sides_of(shape: &str) -> &'static [&'static str] {
+pub fn sides_of(shape: &str) -> &'static [&'static str] {
     match shape {
         "interval" => &["left", "right"],
         "rectangle" => &["top", "bottom", "left", "right"],
@@ -122,40 +122,5 @@ fn sides_of(shape: &str) -> &'static [&'static str] {
         "tube" => &["outer", "inner", "bottom", "top"],
         "extrusion" => &["top", "bottom"],
         _ => &[],
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::MeshSpec;
-
-    #[test]
-    fn vectors_have_the_dimension_of_the_case() {
-        let plane = "{ point = [0.0, 0.0], normal = [0.0, 1.0] }";
-        for (example, one, three) in [
-            ("[0.0, -9.81]", "[-9.81]", "[0.0, -9.81, 0.0]"),
-            ("[0.0, 0.0]", "[0.0]", "[0.0, 0.0, 0.0]"),
-            ("[8, 2]", "[8]", "[8, 2, 2]"),
-            ("[\"0.1*X\", 0.0]", "[\"0.1*X\"]", "[\"0.1*X\", 0.0, 0.0]"),
-            (
-                plane,
-                "{ point = [0.0], normal = [1.0] }",
-                "{ point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }",
-            ),
-            ("\"x\"", "\"x\"", "\"x\""),
-        ] {
-            let found = [1, 2, 3].map(|dimension| in_dimension(example, Some(dimension)));
-            assert_eq!(found, [one, example, three]);
-        }
-    }
-
-    /// Every built-in shape is listed here, with the sides that its documentation names.
-    #[test]
-    fn sides_are_those_of_the_shapes() {
-        for (shape, table) in MeshSpec::variants().tables {
-            let sides = sides_of(shape);
-            assert!(!sides.is_empty() && sides.iter().all(|side| table.doc.contains(side)), "{shape}");
-        }
     }
 }

@@ -9,15 +9,18 @@ mod check;
 mod columns;
 mod conform;
 mod document;
-mod draft;
-mod example;
+#[doc(hidden)]
+pub mod draft;
+#[doc(hidden)]
+pub mod example;
 mod excerpt;
 mod expect;
 mod explained;
 mod explained_columns;
 mod facts;
 pub mod keys;
-mod load_table;
+#[doc(hidden)]
+pub mod load_table;
 mod make;
 mod memory;
 mod mesh_file;
@@ -28,15 +31,19 @@ mod place;
 mod problem;
 mod read;
 mod read_scheme;
-mod refine;
-mod schema;
+#[doc(hidden)]
+pub mod refine;
+#[doc(hidden)]
+pub mod schema;
 mod scheme;
-mod spec;
+#[doc(hidden)]
+pub mod spec;
 mod stored;
 mod suggest;
 mod surface_file;
 mod tree;
-mod unit;
+#[doc(hidden)]
+pub mod unit;
 
 pub use carom_formula::{Function, Functions};
 pub use carom_record::{Bound, Expect as ExpectSpec};

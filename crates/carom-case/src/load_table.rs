@@ -35,10 +35,11 @@ const MOST_BYTES: u64 = 100_000_000;
 
 /// Why a table cannot be used, and what to try.
 #[derive(Debug)]
-pub(super) struct TableError {
+pub struct TableError {
     /// Reason, with the name and line of the file.
-    pub(super) why: String,
-    pub(super) help: String,
+    pub why: String,
+    /// What to try.
+    pub help: String,
 }
 
 impl TableError {
@@ -59,7 +60,7 @@ impl TableError {
 ///
 /// # Errors
 /// If it is not a table of amplitudes.
-pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, TableError> {
+pub fn read(path: &Path, name: &str) -> Result<TableSpec, TableError> {
     columns(path, name, ["t", "value"])
 }
 
@@ -68,7 +69,7 @@ pub(super) fn read(path: &Path, name: &str) -> Result<TableSpec, TableError> {
 ///
 /// # Errors
 /// If it is not a table with these columns.
-pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<TableSpec, TableError> {
+pub(crate) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<TableSpec, TableError> {
     let unreadable = |error: csv::Error| match (error.kind(), error.position().map(csv::Position::line)) {
         (csv::ErrorKind::Io(io), _) if io.kind() == std::io::ErrorKind::NotFound => {
             TableError::of_path(format!("there is no file {}", path.display()))
@@ -130,60 +131,4 @@ pub(super) fn columns(path: &Path, name: &str, wanted: [&str; 2]) -> Result<Tabl
         return Err(TableError::new(why, "add the line of another time"));
     }
     Ok(table)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn table(text: &str) -> Result<TableSpec, TableError> {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.csv");
-        std::fs::write(&path, text).unwrap();
-        read(&path, "a.csv")
-    }
-
-    #[test]
-    fn a_table_is_linear_between_its_lines() {
-        let table = table("# a ramp\nvalue, t\n0, 0\n2, 0.5\n\n-2, 1.5\n").unwrap();
-        for (time, value) in [(0.0, 0.0), (0.25, 1.0), (0.5, 2.0), (1.0, 0.0), (1.5, -2.0)] {
-            assert_eq!(table.value(time), value);
-        }
-    }
-
-    #[test]
-    fn errors_name_file_and_line() {
-        for (text, message) in [
-            (
-                "t,force\n0,1\n",
-                "a.csv:1: there is no column `value`; the columns are: t, force; \
-                 begin a.csv with a line of headings, one of them `value`",
-            ),
-            (
-                "t,value\n0,1\n1,x\n",
-                "a.csv:3: `value` is not a finite number: \"x\"; correct line 3 of a.csv",
-            ),
-            (
-                "t,value\n0,1\n1,nan\n",
-                "a.csv:3: `value` is not a finite number: \"nan\"; correct line 3 of a.csv",
-            ),
-            ("t,value\n0,1\n0,2\n", "a.csv:3: times must increase, but 0 follows 0; correct line 3 of a.csv"),
-            ("t,value\n0,1\n1\n", "a.csv:3: 1 values, but the first line has 2; correct line 3 of a.csv"),
-            (
-                "t,value\n0,1\n",
-                "a.csv: at least two lines of numbers are needed, not 1; add the line of another time",
-            ),
-        ] {
-            let error = table(text).unwrap_err();
-            assert_eq!(format!("{}; {}", error.why, error.help), message);
-        }
-        let error = read(Path::new("nowhere/b.csv"), "b.csv").unwrap_err();
-        assert!(
-            error.why.contains("there is no file nowhere/b.csv") && error.help.contains("check the path")
-        );
-        let folder = tempfile::tempdir().unwrap();
-        for endless in [Path::new("/dev/zero"), folder.path()].into_iter().filter(|path| path.exists()) {
-            assert!(read(endless, "b.csv").unwrap_err().why.contains("is not a regular file"));
-        }
-    }
 }

@@ -7,13 +7,13 @@ use super::tree::{Node, Table};
 const WHOLE: f64 = 1e-9;
 
 /// The numbers of a mesh that are multiplied by the factor.
-pub(super) struct Counts {
+pub struct Counts {
     /// Path of the mesh or of its numbers.
-    path: String,
+    pub path: String,
     /// Whether its cells are those of a file: every edge is one part.
-    of_file: bool,
+    pub of_file: bool,
     /// Numbers of cells.
-    numbers: Vec<usize>,
+    pub numbers: Vec<usize>,
 }
 
 impl Counts {
@@ -52,7 +52,7 @@ impl Counts {
 }
 
 /// The problem of a factor with which the numbers of a mesh do not remain whole.
-pub(super) fn problem(factor: f64, meshes: &[Counts]) -> Option<Problem> {
+pub fn problem(factor: f64, meshes: &[Counts]) -> Option<Problem> {
     let Counts { path, of_file, numbers } =
         meshes.iter().find(|mesh| !whole(factor, divisor(&mesh.numbers)))?;
     let (what, why) = if *of_file {
@@ -90,42 +90,4 @@ fn divisor(numbers: &[usize]) -> usize {
         a
     };
     numbers.iter().copied().fold(0, of_two)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn message(factor: f64, meshes: &[&[usize]]) -> Option<String> {
-        let counts = |(k, n): (usize, &&[usize])| Counts {
-            path: if **n == [1] { format!("body[{k}].mesh") } else { format!("body[{k}].mesh.cells") },
-            of_file: **n == [1],
-            numbers: n.to_vec(),
-        };
-        let meshes: Vec<_> = meshes.iter().enumerate().map(counts).collect();
-        problem(factor, &meshes).map(|problem| format!("{}: {}", problem.what, problem.help))
-    }
-
-    #[test]
-    fn numbers_of_cells_remain_whole() {
-        for (factor, meshes) in [
-            (1.25, &[&[8, 4][..]][..]),
-            (1.5, &[&[8, 4], &[2]]),
-            (4.0 / 3.0, &[&[3]]),
-            (1.333_333_333_333, &[&[3]]),
-            (3.0, &[&[1], &[7]]),
-            (1.1, &[]),
-        ] {
-            assert_eq!(message(factor, meshes), None);
-        }
-        let text = message(1.25, &[&[8, 4], &[4, 3]]).unwrap();
-        for part in ["body[1].mesh.cells = [4, 3] into [5, 3.75]", "`refine = 1` or `refine = 2`"] {
-            assert!(text.contains(part), "{text}");
-        }
-        assert!(message(1.5, &[&[8, 4], &[1]]).unwrap().contains("body[1].mesh comes from a file"));
-        // Multiples of 1/6.
-        assert!(
-            message(1.25, &[&[12, 6]]).unwrap().contains("`refine = 1.166666667` or `refine = 1.333333333`")
-        );
-    }
 }

@@ -9,7 +9,8 @@ mod inside_itself;
 pub mod interface;
 pub mod kinematics;
 mod pair;
-mod places;
+#[doc(hidden)]
+pub mod places;
 mod rows;
 mod skin;
 mod solid_angle;

@@ -94,7 +94,7 @@ pub struct Pairing {
     /// in a concave corner.
     pub(crate) left: BTreeMap<usize, usize>,
     /// Whether no search has been made yet in this solve.
-    pub(crate) fresh: bool,
+    pub fresh: bool,
 }
 
 impl Pairing {

@@ -5,14 +5,14 @@ use carom_algebra::Vector;
 
 /// Positions of the nodes of one configuration.
 #[derive(Clone, Copy)]
-pub(crate) struct Places<'a> {
+pub struct Places<'a> {
     y: &'a [f64],
     dimension: usize,
 }
 
 impl<'a> Places<'a> {
     /// Positions from components flat over all nodes, in one dimension or in the plane.
-    pub(crate) fn new(y: &'a [f64], dimension: usize) -> Self {
+    pub fn new(y: &'a [f64], dimension: usize) -> Self {
         debug_assert!(dimension <= 2, "positions in space are those of `space/`");
         Self { y, dimension }
     }
@@ -30,7 +30,7 @@ impl<'a> Places<'a> {
 
     /// Position of a node, padded with zeros to the plane.
     #[inline]
-    pub(crate) fn at(&self, node: usize) -> Vector<2> {
+    pub fn at(&self, node: usize) -> Vector<2> {
         match self.dimension {
             1 => Vector([self.y[node], 0.0]),
             _ => Vector([self.y[2 * node], self.y[2 * node + 1]]),

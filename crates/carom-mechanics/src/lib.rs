@@ -4,15 +4,15 @@
 
 mod carried;
 mod cells;
-mod check;
-mod contact;
+pub mod check;
+pub mod contact;
 mod created;
 pub mod frequencies;
 mod friction_state;
 mod grid;
 mod grid_report;
 mod ledger;
-mod linear;
+pub mod linear;
 mod materials;
 pub mod model;
 mod place;
@@ -22,17 +22,15 @@ mod restricted;
 mod settings;
 mod simulation;
 pub mod stability;
-mod stage;
-mod start;
+pub mod stage;
+pub mod start;
 mod state;
 mod stepper;
 mod stopped;
-mod substeps;
-#[cfg(test)]
-mod testing;
+pub mod substeps;
 mod timings;
 mod trace;
-mod velocity;
+pub mod velocity;
 mod workspace;
 
 pub use check::overlap::depths;

@@ -275,15 +275,3 @@ impl Rejected {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_depth_is_told_from_its_limit() {
-        assert_eq!(apart(4.2e-3, 4.1e-3), ["4.200e-3", "4.100e-3"]);
-        assert_eq!(apart(4.166_693_1e-3, 4.166_666_7e-3), ["4.16669e-3", "4.16667e-3"]);
-        assert_eq!(apart(0.1 + f64::EPSILON, 0.1), ["1.000000000000002e-1", "1.000000000000000e-1"]);
-    }
-}

@@ -40,7 +40,7 @@ pub struct InitialState {
 
 /// What accelerates the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Inertia {
+pub enum Inertia {
     /// Nothing: they have no inertia.
     None,
     /// All forces.
@@ -57,7 +57,7 @@ const NEAR: f64 = 1e-9;
 /// # Errors
 /// If a cell is inverted, a load or a motion has no value at t = 0, a moving support would jump, or
 /// the mass matrix is singular.
-pub(crate) fn start(
+pub fn start(
     model: &Model,
     inertia: Inertia,
     before: Option<InitialState>,
@@ -133,7 +133,7 @@ pub(crate) fn start(
 }
 
 /// Evaluates the forces of penalty springs; returns their energy.
-pub(crate) fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
+pub fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
     let mut energy = 0.0;
     for (k, contact) in
         model.contacts.iter().enumerate().filter(|(_, contact)| !contact.interface.is_constraint())

@@ -21,28 +21,31 @@ const WORSE: f64 = 4.0;
 
 /// Progress through a grid step in units of Δt/2^level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Progress {
+pub struct Progress {
+    /// Number of bisections.
     pub level: u32,
+    /// Units that are done.
     pub done: u64,
 }
 
 impl Progress {
     /// Part of the grid step that is done.
-    pub(crate) fn done(self) -> f64 {
+    pub fn done(self) -> f64 {
         self.done as f64 / (1_u64 << self.level) as f64
     }
 
     /// Part of the grid step at the end of the next substep.
-    pub(crate) fn next(self) -> f64 {
+    pub fn next(self) -> f64 {
         Self { done: self.done + 1, ..self }.done()
     }
 
-    pub(crate) fn bisect(&mut self) {
+    /// Halves the next substep.
+    pub fn bisect(&mut self) {
         *self = Self { level: self.level + 1, done: 2 * self.done };
     }
 
     /// Completes a substep, and returns to the longest step that begins there.
-    pub(crate) fn advance(&mut self) {
+    pub fn advance(&mut self) {
         self.done += 1;
         while self.level > 0 && self.done.is_multiple_of(2) {
             *self = Self { level: self.level - 1, done: self.done / 2 };
@@ -140,23 +143,4 @@ fn beyond(step: &Accepted, from: &State, share: f64, floor: f64) -> Option<(f64,
     let created = now.surely_created() - so_far;
     let allowed = STEP * (share * now.scale() + floor - so_far).max(0.0);
     (created > allowed.max(ROUND_OFF * now.scale())).then_some((created, allowed))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Progress;
-
-    #[test]
-    fn progress_returns_to_the_longest_step() {
-        let mut progress = Progress { level: 0, done: 0 };
-        progress.bisect();
-        progress.bisect();
-        assert_eq!((progress.done(), progress.next()), (0.0, 0.25));
-        progress.advance();
-        assert_eq!(progress, Progress { level: 2, done: 1 });
-        progress.advance();
-        assert_eq!(progress, Progress { level: 1, done: 1 });
-        progress.advance();
-        assert_eq!(progress, Progress { level: 0, done: 1 });
-    }
 }

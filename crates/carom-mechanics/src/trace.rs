@@ -51,7 +51,7 @@ impl Trace {
     }
 
     /// Starts a step.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.start();
         self.y.clear();
     }
@@ -62,7 +62,7 @@ impl Trace {
     }
 
     /// Adds an iterate at positions `y`.
-    pub(crate) fn push(&mut self, iteration: Iteration, y: &[f64]) {
+    pub fn push(&mut self, iteration: Iteration, y: &[f64]) {
         self.ring[self.count % KEPT] = Iteration { length: self.length, ..iteration };
         self.count += 1;
         self.length = 1.0;
@@ -70,7 +70,7 @@ impl Trace {
     }
 
     /// Notes that only a part of the next correction is taken.
-    pub(crate) fn shorten(&mut self, length: f64) {
+    pub fn shorten(&mut self, length: f64) {
         self.length = length;
     }
 
@@ -81,28 +81,7 @@ impl Trace {
     }
 
     /// Notes the free dof with the largest residual.
-    pub(crate) fn blame(&mut self, residual: &[f64], free: &[usize]) {
+    pub fn blame(&mut self, residual: &[f64], free: &[usize]) {
         self.worst = free.iter().copied().max_by(|&a, &b| residual[a].abs().total_cmp(&residual[b].abs()));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_last_iterations_are_kept() {
-        let mut trace = Trace::default();
-        for number in 0..30 {
-            trace.shorten(if number == 29 { 0.5 } else { 1.0 });
-            trace.push(Iteration { number, ..Iteration::default() }, &[f64::from(number)]);
-        }
-        let kept: Vec<(u32, f64)> = trace.iterations().map(|i| (i.number, i.length)).collect();
-        assert_eq!((kept[0], kept[11]), ((18, 1.0), (29, 0.5)));
-        assert_eq!(trace.positions(), [29.0]);
-        trace.blame(&[1.0, -9.0, 3.0], &[0, 2]);
-        assert_eq!(trace.worst(), Some(2));
-        trace.clear();
-        assert!(trace.iterations().next().is_none() && trace.positions().is_empty());
     }
 }

@@ -17,7 +17,7 @@ use crate::trace::Trace;
 /// the number of factorisations are records of what was done.
 pub struct Workspace {
     /// Linear system.
-    pub(crate) system: System,
+    pub system: System,
     /// Memory of evaluations.
     pub(crate) spare: Spare,
     /// Memory of states.

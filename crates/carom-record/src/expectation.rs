@@ -117,6 +117,3 @@ pub fn judge(run: &Run, expects: &[Expect]) -> Vec<Expectation> {
         |e: &Expect| if judged { e.got(run) } else { Err(format!("the run stopped: {}", reason()).into()) };
     expects.iter().map(|e| e.verdict(got(e))).collect()
 }
-
-#[cfg(test)]
-mod tests;

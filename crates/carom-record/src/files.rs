@@ -1,6 +1,7 @@
 //! Atomic replacement of files: write a temporary file, rename it, and flush it to the disk where
 //! it must survive a power failure.
 
+use std::cell::Cell;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -22,15 +23,17 @@ pub(crate) fn write_unsynced(path: &Path, parts: &[&[u8]]) -> Result<(), RecordE
 
 /// Flushes an open file to the disk. Every flush of this crate passes through here.
 pub(crate) fn flush(file: &File) -> io::Result<()> {
-    #[cfg(test)]
     FLUSHES.with(|count| count.set(count.get() + 1));
     file.sync_all()
 }
 
-#[cfg(test)]
 thread_local! {
-    /// Flushes of this thread.
-    pub(crate) static FLUSHES: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+    static FLUSHES: Cell<usize> = const { Cell::new(0) };
+}
+
+/// How often this thread has flushed a file to the disk.
+pub fn flushes() -> usize {
+    FLUSHES.get()
 }
 
 /// Flushes a file written earlier to the disk.

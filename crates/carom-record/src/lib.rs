@@ -12,19 +12,23 @@
 //! This crate knows no model and no solver. Equal numbers give equal bytes, and a run that is
 //! killed and resumed writes the same bytes as an uninterrupted one.
 
-mod available;
+#[doc(hidden)]
+pub mod available;
 mod checkpoint;
-mod decimal;
+#[doc(hidden)]
+pub mod decimal;
 mod error;
 mod expect;
 mod expectation;
 mod export;
-mod expression;
+#[doc(hidden)]
+pub mod expression;
 mod facts;
 mod files;
 mod intact;
 pub mod json;
-mod manifest;
+#[doc(hidden)]
+pub mod manifest;
 pub mod metrics;
 pub mod order;
 mod pvd;
@@ -50,7 +54,7 @@ pub use expect::{Bound, Deviation, Expect, Norm, OrderOf};
 pub use expectation::judge;
 pub use expression::{Expression, Sign};
 pub use facts::{ContactFacts, Facts, Held, Overlay, body_of};
-pub use files::is_free;
+pub use files::{flushes, is_free};
 pub use intact::{checkpoints, last_checkpoint};
 pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Status, now};
 pub use pvd::FieldEntry;

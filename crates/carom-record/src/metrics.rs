@@ -8,28 +8,39 @@
 //! difference of the recorded `contact_impulse`, which the time integrator accumulates; a mean
 //! force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
 
-mod averaged;
+#[doc(hidden)]
+pub mod averaged;
 mod book;
-mod column;
+#[doc(hidden)]
+pub mod column;
 mod compare;
 mod cost;
 mod definition;
 mod episode;
 mod evaluated;
 mod file;
-mod force;
-mod given;
-mod group;
+#[doc(hidden)]
+pub mod force;
+#[doc(hidden)]
+pub mod given;
+#[doc(hidden)]
+pub mod group;
 mod ledger;
-mod oscillation;
-mod overlay;
-mod pressure;
+#[doc(hidden)]
+pub mod oscillation;
+#[doc(hidden)]
+pub mod overlay;
+#[doc(hidden)]
+pub mod pressure;
 mod rebound;
-mod run_table;
-mod samples;
+#[doc(hidden)]
+pub mod run_table;
+#[doc(hidden)]
+pub mod samples;
 mod signal;
 mod striker;
-mod table;
+#[doc(hidden)]
+pub mod table;
 
 pub use crate::facts::Overlay;
 pub use crate::units::Unit;
@@ -46,13 +57,9 @@ pub(crate) use given::Given;
 pub use given::contact_force;
 pub use group::{TITLES, group};
 pub use ledger::{MUCH_CREATED, energy_lost_at};
-pub(crate) use overlay::OVERLAY;
-pub use overlay::overlays;
+pub use overlay::{OVERLAY, overlays};
 pub use rebound::{Impact, no_rebound};
 pub(crate) use run_table::{PRESSURE, WORK};
 pub(crate) use samples::{at, extreme};
 pub use signal::{Distance, Signal};
 pub use striker::striker;
-
-#[cfg(test)]
-mod tests;

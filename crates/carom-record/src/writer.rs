@@ -324,6 +324,3 @@ fn drop_fields(directory: &Path, keep: &[FieldEntry]) -> Result<(), RecordError>
     pvd::write(directory, keep)?;
     files::sync(&directory.join(pvd::FILE))
 }
-
-#[cfg(test)]
-mod tests;

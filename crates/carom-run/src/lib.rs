@@ -1,12 +1,15 @@
 //! Simulations built from cases, run step by step in memory or into a run directory. Users import
 //! the crate `carom`, which re-exports this one.
 
-mod build;
+#[doc(hidden)]
+pub mod build;
 mod initial;
 mod overlap;
-mod quantity;
+#[doc(hidden)]
+pub mod quantity;
 pub mod recording;
-mod reduce;
+#[doc(hidden)]
+pub mod reduce;
 mod saved_state;
 mod setup;
 mod thread_count;

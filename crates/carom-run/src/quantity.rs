@@ -4,17 +4,17 @@
 const DIGITS: i32 = 4;
 
 /// A number to four digits, with its unit: `12.35 mm`.
-pub(crate) fn quantity(x: f64, unit: &str) -> String {
+pub fn quantity(x: f64, unit: &str) -> String {
     with_unit(rounded(x, f64::round), unit)
 }
 
 /// A number with its unit, rounded up, for what is needed at least.
-pub(crate) fn at_least(x: f64, unit: &str) -> String {
+pub fn at_least(x: f64, unit: &str) -> String {
     with_unit(rounded(x, f64::ceil), unit)
 }
 
 /// A number with its unit, rounded down, for what is allowed at most.
-pub(crate) fn at_most(x: f64, unit: &str) -> String {
+pub fn at_most(x: f64, unit: &str) -> String {
     with_unit(rounded(x, f64::floor), unit)
 }
 
@@ -33,26 +33,4 @@ fn rounded(x: f64, rule: impl Fn(f64) -> f64) -> f64 {
     // Read from text: a product with a power of ten would have digits of its own.
     let scaled: f64 = format!("{:.9}", x / 10f64.powi(exponent)).parse().unwrap_or(x);
     format!("{}e{exponent}", rule(scaled)).parse().unwrap_or(x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn four_digits_and_a_unit() {
-        assert_eq!(quantity(10.0, "mm"), "10 mm");
-        assert_eq!(quantity(0.001, "m"), "0.001 m");
-        assert_eq!(quantity(3.0 * 0.1, ""), "0.3");
-        assert_eq!(quantity(1.23456e-7, "s"), "1.235e-7 s");
-        assert_eq!(quantity(-1234567.0, "N"), "-1.235e6 N");
-        assert_eq!((quantity(0.0, "m"), quantity(f64::NAN, "m")), ("0 m".to_owned(), "NaN m".to_owned()));
-    }
-
-    #[test]
-    fn bounds_are_kept() {
-        assert_eq!(at_least(0.123412, "m"), "0.1235 m");
-        assert_eq!(at_least(0.1234, "m"), "0.1234 m");
-        assert_eq!(at_most(0.00123999, "s"), "0.001239 s");
-    }
 }

@@ -136,7 +136,7 @@ fn trimmed(case: &Case, step: u64) -> Case {
 }
 
 /// A product without the digits of its round-off, as it would be written: 39 × 5e-5 is 0.00195.
-fn shortest(product: f64) -> f64 {
+pub fn shortest(product: f64) -> f64 {
     format!("{product:.11e}").parse().unwrap_or(product)
 }
 
@@ -365,16 +365,4 @@ fn written(path: &Path, stop: &Stop) -> Option<String> {
     let document = carom_case::Document::open(path, &[]).ok()?;
     let case = carom_case::read(&document).ok()?;
     stops(Setup::new(&case).start().ok()?, &case, stop)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn products_are_written_without_their_round_off() {
-        assert_eq!(shortest(39.0 * 5e-5).to_string(), "0.00195");
-        assert_eq!(shortest(3.0 * 0.1).to_string(), "0.3");
-        assert_eq!(shortest(7.0 / 3.0), 2.33333333333);
-    }
 }

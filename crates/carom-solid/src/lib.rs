@@ -4,7 +4,8 @@
 mod bernstein;
 mod body;
 mod bounds;
-mod discrete_gradient;
+#[doc(hidden)]
+pub mod discrete_gradient;
 mod earliest;
 mod element_shape;
 mod facet;
@@ -23,9 +24,11 @@ mod points;
 mod positions;
 pub mod quadrature;
 mod quality;
-mod reference;
+#[doc(hidden)]
+pub mod reference;
 pub mod shape;
-mod solid;
+#[doc(hidden)]
+pub mod solid;
 pub mod stl;
 mod subdivide;
 mod tree;

@@ -25,7 +25,7 @@ pub(crate) fn interpolate<const D: usize, const N: usize>(
 
 /// Σ xᵃ ⊗ gᵃ.
 #[inline]
-pub(crate) fn gradient<const D: usize, const N: usize>(x: &[Vector<D>; N], g: &[Vector<D>; N]) -> Mat<D> {
+pub fn gradient<const D: usize, const N: usize>(x: &[Vector<D>; N], g: &[Vector<D>; N]) -> Mat<D> {
     let mut sum = Mat::ZERO;
     for a in 0..N {
         sum += x[a].outer(&g[a]);

@@ -319,7 +319,6 @@ mod constant;
 mod integrals;
 mod mean;
 mod memory;
-mod projection;
+#[doc(hidden)]
+pub mod projection;
 mod rotation;
-#[cfg(test)]
-mod rules;

@@ -40,6 +40,18 @@ impl Tree {
         tree
     }
 
+    /// Number of boxes that a query is compared with.
+    #[must_use]
+    pub fn visited(&self, query: &Bounds) -> usize {
+        let mut k = 0;
+        let mut count = 0;
+        while let Some(node) = self.nodes.get(k) {
+            count += 1;
+            k = if node.bounds.meets(query) { k + 1 } else { node.end };
+        }
+        count
+    }
+
     /// Moves the boxes of a tree of `count` boxes, or makes one of an empty tree.
     pub fn place(&mut self, count: usize, bounds: impl Fn(usize) -> Bounds) {
         if self.is_empty() {
@@ -212,6 +224,3 @@ impl Node {
         self.end == k + 1
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -34,8 +34,8 @@ const TOLERANCE: f64 = 1e-6;
 pub struct Validity<const D: usize, const N: usize> {
     tables: Bernstein<D, N>,
     /// Whether control points are the nodes, and the determinant is that of the edges from the
-    /// first.
-    is_affine: bool,
+    /// first, for which there is a shorter formula.
+    pub is_affine: bool,
     /// Λ.
     amplification: f64,
     /// Largest change of a difference if every node moves by at most 1.
@@ -358,6 +358,3 @@ impl<const D: usize> Piece for Subdomain<D> {
         self.rows.iter().flatten().all(|&c| c > self.error)
     }
 }
-
-#[cfg(test)]
-mod tests;

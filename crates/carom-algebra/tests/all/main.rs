@@ -3,5 +3,14 @@
 #![allow(clippy::unwrap_used)]
 
 mod condensed;
+mod cone;
+mod forest;
+mod mixing;
+mod pattern;
+mod principal;
 mod projected;
 mod saddle;
+mod small;
+mod sums;
+mod symbolic;
+mod threads;

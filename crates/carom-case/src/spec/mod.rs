@@ -9,7 +9,7 @@ mod mesh;
 mod mesh_size;
 mod obstacle;
 mod output;
-mod polygon;
+pub mod polygon;
 mod tie;
 mod time;
 

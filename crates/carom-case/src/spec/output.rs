@@ -134,16 +134,3 @@ fn only_vtu(v: &View) -> Option<()> {
         "leave format out; after the run, carom.open(DIRECTORY).to_vtkhdf(FILE) in Python makes one VTKHDF file",
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_of_quantities_are_those_of_cases() {
-        for name in Quantity::WORDS {
-            let read: Quantity = serde_json::from_value((*name).into()).unwrap();
-            assert_eq!(read.word(), *name);
-        }
-    }
-}

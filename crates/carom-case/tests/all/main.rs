@@ -4,14 +4,23 @@
 
 mod contact_messages;
 mod corpus;
+mod example;
 mod excerpt;
+mod explained_columns;
 mod files;
+mod load_table;
 mod memory;
 mod mesh_file;
 mod messages;
 mod misspelt;
+mod place;
+mod polygon;
+mod quantities;
+mod refine;
+mod schema;
 mod shapes;
 mod surface_file;
+mod unit;
 
 use carom_case::*;
 

@@ -7,7 +7,8 @@
 //! ```
 
 mod augmented;
-mod conserving_penalty;
+#[doc(hidden)]
+pub mod conserving_penalty;
 mod conserving_unilateral;
 mod penalty;
 mod unilateral;

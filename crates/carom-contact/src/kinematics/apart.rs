@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 1e-9;
 /// The nodes of two sets that are far from each other, and how far they may move before a search is
 /// needed.
 #[derive(Clone, Debug)]
-pub(crate) struct Apart {
+pub struct Apart {
     nodes: Vec<usize>,
     dimension: usize,
     /// Bound A of the sum of the weights of a facet's nodes in the points around it.
@@ -35,7 +35,7 @@ pub(crate) struct Apart {
 impl Apart {
     /// Two sets of nodes before the first search; `weight`: a bound of the sum of the weights of a
     /// facet's nodes in the points around it.
-    pub(crate) fn new(nodes: impl IntoIterator<Item = usize>, dimension: usize, weight: f64) -> Self {
+    pub fn new(nodes: impl IntoIterator<Item = usize>, dimension: usize, weight: f64) -> Self {
         let mut nodes: Vec<usize> = nodes.into_iter().collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -49,7 +49,7 @@ impl Apart {
 
     /// Whether the two sets certainly stay apart in a motion between two positions, flat over all
     /// nodes, with a margin around facets relative to their size.
-    pub(crate) fn holds(&self, margin: f64, [before, now]: [&[f64]; 2]) -> bool {
+    pub fn holds(&self, margin: f64, [before, now]: [&[f64]; 2]) -> bool {
         if self.clearance <= 0.0 || margin > self.margin {
             return false;
         }
@@ -67,7 +67,7 @@ impl Apart {
 
     /// Stores the clearance after a search up to the positions `now`, from the boxes of all facets
     /// and of all nodes, which were grown by m and n of their sizes.
-    pub(crate) fn searched(&mut self, [facets, nodes]: [&Bounds; 2], [m, n]: [f64; 2], now: &[f64]) {
+    pub fn searched(&mut self, [facets, nodes]: [&Bounds; 2], [m, n]: [f64; 2], now: &[f64]) {
         let low = facets.low();
         let high = facets.high();
         let between = |i: usize| (nodes.low()[i] - high[i]).max(low[i] - nodes.high()[i]);
@@ -81,34 +81,5 @@ impl Apart {
             let of_node = |&node: &usize| &now[node * self.dimension..(node + 1) * self.dimension];
             self.places.extend(self.nodes.iter().flat_map(of_node));
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Nodes 0 and 2 beside a facet at the origin: boxes 3 apart, A = 1, no margins. Both may move
-    /// by 1.5.
-    #[test]
-    fn holds_until_the_boxes_may_meet() {
-        let mut apart = Apart::new([2, 0, 2], 2, 1.0);
-        let facet = Bounds::of(&[0.0, 0.0]);
-        let node = Bounds::of(&[3.0, 1.0]);
-        let y = [0.0, 0.0, 9.0, 9.0, 3.0, 1.0];
-        assert!(!apart.holds(0.0, [&y, &y]));
-        apart.searched([&facet, &node], [0.0; 2], &y);
-        let with = |dof: usize, x: f64| {
-            let mut moved = y;
-            moved[dof] += x;
-            moved
-        };
-        assert!(apart.holds(0.0, [&with(4, -1.49), &with(0, 1.49)]));
-        assert!(!apart.holds(0.0, [&with(4, -1.51), &y]) && !apart.holds(0.0, [&y, &with(1, 1.51)]));
-        // Node 1 belongs to neither; a wider margin was not searched.
-        assert!(apart.holds(0.0, [&y, &with(3, 5.0)]) && !apart.holds(0.1, [&y, &y]));
-        assert!(!apart.holds(0.0, [&y, &with(4, f64::NAN)]));
-        apart.searched([&facet, &Bounds::of(&[0.0, 0.0])], [0.0; 2], &y);
-        assert!(!apart.holds(0.0, [&y, &y]));
     }
 }

@@ -28,7 +28,7 @@ pub struct OnFacet<X> {
 
 /// The facets of a boundary, all of one shape; positions `y` are flat over all nodes, `D`
 /// components each.
-pub(crate) trait Facets<const D: usize> {
+pub trait Facets<const D: usize> {
     /// Shape of every facet.
     fn shape(&self) -> FacetShape;
 

@@ -41,7 +41,7 @@ const TIP: f64 = -0.5;
 
 /// The order of the facets of a body along the loops of its boundary, and its corners.
 #[derive(Clone, Debug)]
-pub(crate) struct Folds {
+pub struct Folds {
     /// All facets in the order of traversal, loop by loop.
     order: Vec<usize>,
     /// Place of each facet in the order of traversal.
@@ -71,7 +71,7 @@ pub enum Side {
 
 /// Turns of the tangent along the boundary of a body at given positions.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Turns {
+pub struct Turns {
     /// Turn of the tangent from the start of the loop to the start of each facet, in the order of
     /// traversal.
     start: Vec<f64>,
@@ -85,7 +85,7 @@ impl Folds {
     /// Orders all facets of a surface at reference positions, independently of the order in which
     /// they are given; `piece`: number of the connected piece of the body to which each node
     /// belongs, from `first_node` on.
-    pub(crate) fn new(surface: &Surface, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+    pub fn new(surface: &Surface, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let count = surface.all();
         let mut order = Vec::with_capacity(count);
         let mut starts = vec![0];
@@ -142,7 +142,7 @@ impl Folds {
 
     /// Whether a node and a facet may form a pair in which the node comes on the given side of the
     /// facet.
-    pub(crate) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
+    pub fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
         let Some(around) = self.around(node) else { return false };
         let at = self.place[facet];
         // At the joint that closes a loop, a node belongs to the end.
@@ -190,7 +190,7 @@ impl Folds {
 
     /// Whether the boundary folds such that a node faces a facet; only then is an admissible pair
     /// compared.
-    pub(crate) fn face(&self, turns: &Turns, node: usize, facet: usize) -> bool {
+    pub fn face(&self, turns: &Turns, node: usize, facet: usize) -> bool {
         let Some([before, after]) = self.around(node) else { return false };
         let run = self.of[facet];
         let at = self.place[facet];
@@ -231,7 +231,7 @@ fn joint(surface: &Surface, facet: usize, y: Places) -> f64 {
 
 impl Turns {
     /// Recomputes the turns of the tangent at the positions `y`.
-    pub(crate) fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
+    pub fn update(&mut self, folds: &Folds, surface: &Surface, y: Places) {
         self.update_loops(&folds.order, &folds.starts, &folds.joints, surface, y);
     }
 
@@ -290,90 +290,5 @@ impl Turns {
             largest = largest.max(start[k]).max(end(k));
         }
         best.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use carom_solid::FacetShape;
-
-    use super::*;
-
-    /// A closed polygon, and whether a node faces a facet. The midside nodes are left out.
-    fn face(corners: &[[f64; 2]], node: usize, facet: usize) -> bool {
-        let n = corners.len();
-        let facets: Vec<Vec<usize>> = (0..n).map(|k| vec![k, (k + 1) % n]).collect();
-        let surface = Surface::new(FacetShape::L2, &facets, &vec![1.0; n]);
-        let folds = Folds::new(&surface, &vec![0; n], 0, corners.as_flattened());
-        let mut turns = Turns::default();
-        turns.update(&folds, &surface, Places::new(corners.as_flattened(), 2));
-        let admitted = [Side::Later, Side::Earlier].map(|side| folds.admits(side, node, facet));
-        assert!(admitted != [true, true]);
-        admitted.contains(&true) && folds.face(&turns, node, facet)
-    }
-
-    /// A block with a slot from the top: nodes 3, 4 on its right flank, 5 at the tip, 6, 7 on the
-    /// left.
-    fn slotted(half: f64) -> Vec<[f64; 2]> {
-        vec![
-            [-2.0, 0.0],
-            [2.0, 0.0],
-            [2.0, 2.0],
-            [half, 2.0],
-            [0.5 * half, 1.5],
-            [0.0, 1.0],
-            [-0.5 * half, 1.5],
-            [-half, 2.0],
-            [-2.0, 2.0],
-        ]
-    }
-
-    #[test]
-    fn the_flanks_of_a_slot_meet_up_to_its_tip_even_if_it_is_closed() {
-        for half in [0.3, 1e-3, 0.0, -1e-3] {
-            let block = slotted(half);
-            // Facet k begins at node k.
-            for (node, facet) in [(4, 5), (4, 6), (3, 6), (6, 4), (6, 3), (7, 3)] {
-                assert!(face(&block, node, facet), "{half}: node {node}, facet {facet}");
-            }
-            // Along one flank, over its mouth, and through the body.
-            for (node, facet) in [(4, 3), (4, 4), (3, 4), (1, 7), (0, 3), (2, 3), (3, 1), (5, 0)] {
-                assert!(!face(&block, node, facet), "{half}: node {node}, facet {facet}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_convex_body_meets_itself_nowhere() {
-        // Wedges of 10° and less, with nodes on their flanks.
-        for half in [0.0875, 0.03, 1e-3, 1e-6] {
-            let wedge = [[0.0, 0.0], [1.0, -half], [2.0, -2.0 * half], [2.0, 2.0 * half], [1.0, half]];
-            assert!((0..5).all(|node| (0..5).all(|facet| !face(&wedge, node, facet))), "{half}");
-        }
-        let disc: Vec<[f64; 2]> =
-            (0..12).map(|k| f64::from(k) * PI / 6.0).map(|a| [a.cos(), a.sin()]).collect();
-        assert!((0..12).all(|node| (0..12).all(|facet| !face(&disc, node, facet))));
-        // Seen from inside, it is a hole whose opposite sides may meet, but not its neighbours.
-        let hole: Vec<[f64; 2]> = disc.into_iter().rev().collect();
-        assert!(face(&hole, 0, 5) && face(&hole, 0, 6) && !face(&hole, 0, 1) && !face(&hole, 0, 10));
-    }
-
-    #[test]
-    fn a_tongue_in_a_hole_does_not_meet_itself_through_its_material() {
-        // A square hole, traversed with the body on the left, with a thin tongue from below.
-        let hole = [
-            [-2.0, 0.0],
-            [-2.0, 3.0],
-            [2.0, 3.0],
-            [2.0, 0.0],
-            [0.1, 0.0],
-            [0.1, 1.0],
-            [0.1, 2.0],
-            [-0.1, 2.0],
-            [-0.1, 1.0],
-            [-0.1, 0.0],
-        ];
-        assert!(!face(&hole, 5, 8) && !face(&hole, 5, 7) && !face(&hole, 8, 5));
-        assert!(face(&hole, 5, 2) && face(&hole, 8, 0) && face(&hole, 6, 1));
     }
 }

@@ -14,7 +14,7 @@ const FLAT: f64 = 1e-9;
 /// Whether a facet lies in a plane of symmetry at the positions `y`, flat over all nodes with
 /// `dimension` components each; `bodies`: a box around all bodies; `is_fixed`: whether a node is
 /// fixed along an axis.
-pub(crate) fn is_mirror(
+pub fn is_mirror(
     nodes: &[usize],
     y: &[f64],
     dimension: usize,
@@ -46,24 +46,4 @@ pub(crate) fn is_mirror(
 /// A vector without twice its component along a direction of length one.
 pub(super) fn reflected<const D: usize>(vector: Vector<D>, direction: Vector<D>) -> Vector<D> {
     vector - direction * (2.0 * vector.dot(&direction))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::is_mirror;
-
-    #[test]
-    fn an_edge_on_the_axis_is_no_surface_if_it_may_slide_along_it() {
-        let y = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let bodies = y.chunks(2).collect();
-        let across = |_: usize, axis: usize| axis == 0;
-        assert!(is_mirror(&[0, 1], &y, 2, &bodies, &across));
-        // Not the edge beside it, nor one that is held, nor a free one.
-        assert!(!is_mirror(&[1, 2], &y, 2, &bodies, &across));
-        assert!(!is_mirror(&[0, 1], &y, 2, &bodies, &|_, _| true));
-        assert!(!is_mirror(&[0, 1], &y, 2, &bodies, &|_, _| false));
-        // Nor one beyond which another body reaches.
-        let beyond = [[-0.1, 0.0], [1.0, 1.0]].iter().collect();
-        assert!(!is_mirror(&[0, 1], &y, 2, &beyond, &across));
-    }
 }

@@ -3,19 +3,23 @@
 //!
 //! Positions are flat over all nodes, `dimension` components each.
 
-mod apart;
+#[doc(hidden)]
+pub mod apart;
 mod candidate;
 mod carrier;
 mod combined;
 mod facet_rows;
-mod facets;
+#[doc(hidden)]
+pub mod facets;
 mod facing;
-mod folds;
+#[doc(hidden)]
+pub mod folds;
 mod gap;
 mod hand_over;
 mod itself;
 mod joint;
-mod mirror;
+#[doc(hidden)]
+pub mod mirror;
 mod mortar;
 mod node_to_facet;
 mod node_to_obstacle;
@@ -23,17 +27,23 @@ mod obstacle;
 mod opposed;
 mod outward;
 mod passed;
-mod projection;
-mod recent;
+#[doc(hidden)]
+pub mod projection;
+#[doc(hidden)]
+pub mod recent;
 mod reversed;
-mod rounding;
-mod space;
+#[doc(hidden)]
+pub mod rounding;
+#[doc(hidden)]
+pub mod space;
 mod surface;
 mod swept;
 mod tangents;
 mod tip_to_facet;
-mod trajectory;
-mod way;
+#[doc(hidden)]
+pub mod trajectory;
+#[doc(hidden)]
+pub mod way;
 
 pub use carrier::Carrier;
 pub use combined::Combined;
@@ -203,9 +213,9 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Global numbers of the nodes at which both sides meet a plane of symmetry, if a secondary node,
-    /// given by index, stands for the coefficient of a pressure field there: no tangential traction
-    /// acts in such a plane.
+    /// Global numbers of the nodes at which both sides meet a plane of symmetry, if a secondary
+    /// node, given by index, stands for the coefficient of a pressure field there: no tangential
+    /// traction acts in such a plane.
     fn in_plane_of_symmetry(&self, _node: usize) -> Vec<usize> {
         Vec::new()
     }

@@ -10,26 +10,26 @@ use crate::places::Places;
 
 /// A facet in the plane: its shape, its nodes, and the sign of its normal if it is a point.
 #[derive(Clone, Copy)]
-pub(crate) struct Facet<'a> {
-    pub(crate) shape: FacetShape,
-    pub(crate) nodes: &'a [usize],
-    pub(crate) orientation: f64,
+pub struct Facet<'a> {
+    pub shape: FacetShape,
+    pub nodes: &'a [usize],
+    pub orientation: f64,
 }
 
 /// Position of a facet in the plane at ξ, with its first two derivatives and its unit normal.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FacetPoint {
-    pub(crate) position: Vector<2>,
-    pub(crate) tangent: Vector<2>,
-    pub(crate) second: Vector<2>,
-    pub(crate) normal: Vector<2>,
+pub struct FacetPoint {
+    pub position: Vector<2>,
+    pub tangent: Vector<2>,
+    pub second: Vector<2>,
+    pub normal: Vector<2>,
     /// Length of the derivative of the position by ξ; 1 for a point.
-    pub(crate) measure: f64,
+    pub measure: f64,
 }
 
 impl Facet<'_> {
     /// Position of the facet at ξ, with its derivatives.
-    pub(crate) fn at(&self, y: Places, xi: f64) -> FacetPoint {
+    pub fn at(&self, y: Places, xi: f64) -> FacetPoint {
         self.seen_from(Vector::ZERO, y, xi)
     }
 
@@ -65,7 +65,7 @@ impl Facet<'_> {
 
     /// Coordinate ξ of the closest point by Newton's method from a good guess; `None` if it does
     /// not converge to a minimum within |ξ| ≤ `reach`.
-    pub(crate) fn closest_from(&self, y: Places, from: Vector<2>, start: f64, reach: f64) -> Option<f64> {
+    pub fn closest_from(&self, y: Places, from: Vector<2>, start: f64, reach: f64) -> Option<f64> {
         if self.is_point() {
             return Some(0.0);
         }
@@ -90,7 +90,7 @@ impl Facet<'_> {
 
     /// Coordinate ξ of the closest stationary point within |ξ| ≤ `reach`, by sampling and
     /// refinement; `None` if the distance decreases towards an end.
-    pub(crate) fn closest_point(&self, y: Places, from: Vector<2>, reach: f64) -> Option<f64> {
+    pub fn closest_point(&self, y: Places, from: Vector<2>, reach: f64) -> Option<f64> {
         const SAMPLES: usize = 12;
         if self.is_point() {
             return Some(0.0);
@@ -147,30 +147,4 @@ pub(super) fn bisected(mut low: f64, mut high: f64, start: f64, slope: impl Fn(f
         xi = next;
     }
     xi
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn finds_the_nearest_of_two_valleys() {
-        // A cubic through (−1, 1) (1, 1) with unevenly lowered interior nodes, compared with a
-        // dense scan.
-        let y = [-1.0, 1.0, 1.0, 1.0, -0.4, -0.3, 0.4, -0.6];
-        let y = Places::new(&y, 2);
-        let facet = Facet { shape: FacetShape::L4, nodes: &[0, 1, 2, 3], orientation: 1.0 };
-        for k in 0..20 {
-            let from = Vector([-0.9 + 0.09 * f64::from(k), 1.2]);
-            let scan = (-1000..=1000)
-                .map(|i| f64::from(i) * 1.2e-3)
-                .map(|xi| ((from - facet.at(y, xi).position).norm(), xi))
-                .fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
-            if scan.1.abs() < 1.19 {
-                let xi = facet.closest_point(y, from, 1.2).unwrap();
-                assert!((xi - scan.1).abs() < 2e-3, "{xi} {scan:?}");
-                assert!((facet.closest_from(y, from, xi + 1e-3, 1.3).unwrap() - xi).abs() < 1e-13);
-            }
-        }
-    }
 }

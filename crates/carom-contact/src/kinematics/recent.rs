@@ -15,12 +15,12 @@
 use super::facets::OnFacet;
 
 /// The point of possible contact of a node, if there is one.
-pub(crate) type Candidate<X> = Option<OnFacet<X>>;
+pub type Candidate<X> = Option<OnFacet<X>>;
 
 /// Cache of the last search of a solve: the positions of the nodes of both sides and the candidates
 /// found, with coordinates of type X on a facet.
 #[derive(Clone, Debug)]
-pub(crate) struct Recent<X> {
+pub struct Recent<X> {
     nodes: Vec<usize>,
     dimension: usize,
     /// Factor 2√3 (1 + A) by which a change of a coordinate may reduce the distance of a node from
@@ -37,7 +37,7 @@ pub(crate) struct Recent<X> {
 impl<X: Copy> Recent<X> {
     /// An empty cache for the nodes of both sides, ascending; `weight`: bound A of the sum of the
     /// weights of a facet's nodes; `secondary`: number of secondary nodes.
-    pub(crate) fn new(nodes: Vec<usize>, dimension: usize, weight: f64, secondary: usize) -> Self {
+    pub fn new(nodes: Vec<usize>, dimension: usize, weight: f64, secondary: usize) -> Self {
         let weight = 2.0 * 3.0_f64.sqrt() * (1.0 + weight);
         let places = [Vec::new(), Vec::new()];
         Self { nodes, dimension, weight, margin: f64::NAN, places, found: vec![None; secondary] }
@@ -45,7 +45,7 @@ impl<X: Copy> Recent<X> {
 
     /// Whether a search between two positions is so close to the last one that its results hold,
     /// given the separation of the certified test.
-    pub(crate) fn repeats(&self, margin: f64, [before, now]: [&[f64]; 2], separation: f64) -> bool {
+    pub fn repeats(&self, margin: f64, [before, now]: [&[f64]; 2], separation: f64) -> bool {
         let reach = separation / self.weight;
         // A NaN is not within.
         let close = |a: &f64, b: f64| (a - b).abs() <= reach;
@@ -56,7 +56,7 @@ impl<X: Copy> Recent<X> {
     }
 
     /// Begins a search between two positions, without results.
-    pub(crate) fn begin(&mut self, margin: f64, ends: [&[f64]; 2]) {
+    pub fn begin(&mut self, margin: f64, ends: [&[f64]; 2]) {
         self.margin = margin;
         for (k, y) in ends.into_iter().enumerate() {
             let mut places = std::mem::take(&mut self.places[k]);
@@ -68,59 +68,23 @@ impl<X: Copy> Recent<X> {
     }
 
     /// Forgets the last search.
-    pub(crate) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.places[0].clear();
     }
 
     /// Stores the candidate of a secondary node, or that there is none.
-    pub(crate) fn set(&mut self, node: usize, candidate: Candidate<X>) {
+    pub fn set(&mut self, node: usize, candidate: Candidate<X>) {
         self.found[node] = Some(candidate);
     }
 
     /// Candidate of a secondary node in the last search, or that there is none; nothing if it was
     /// not stored.
-    pub(crate) fn get(&self, node: usize) -> Option<Candidate<X>> {
+    pub fn get(&self, node: usize) -> Option<Candidate<X>> {
         self.found[node]
     }
 
     fn of_nodes<'a>(&'a self, y: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let of_node = |&node: &usize| &y[node * self.dimension..(node + 1) * self.dimension];
         self.nodes.iter().flat_map(of_node).copied()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Nodes 0 and 2 in the plane, A = 1: positions may change by s/(4√3).
-    #[test]
-    fn a_search_is_repeated_up_to_what_certificates_leave() {
-        let mut recent: Recent<f64> = Recent::new(vec![0, 2], 2, 1.0, 1);
-        let before = [0.0, 0.0, 9.0, 9.0, 3.0, 1.0];
-        let now = [0.1, 0.0, 9.0, 9.0, 3.0, 1.0];
-        let separation = 4.0 * 3.0_f64.sqrt();
-        let margin = 0.5;
-        let with = |dof: usize, by: f64| {
-            let mut moved = now;
-            moved[dof] += by;
-            moved
-        };
-        assert!(!recent.repeats(margin, [&before, &now], separation));
-        recent.begin(margin, [&before, &now]);
-        assert_eq!(recent.get(0), None);
-        recent.set(0, Some(OnFacet { facet: 7, xi: 0.5 }));
-        assert!(recent.repeats(margin, [&before, &with(4, 0.99)], separation));
-        assert!(!recent.repeats(margin, [&before, &with(4, 1.01)], separation));
-        assert!(!recent.repeats(margin, [&before, &with(0, f64::NAN)], separation));
-        // Node 1 belongs to neither side. The start must be the same to the last bit.
-        assert!(recent.repeats(margin, [&before, &with(3, 5.0)], separation));
-        assert!(!recent.repeats(margin, [&with(0, -0.1 + 1e-16), &now], separation));
-        assert!(!recent.repeats(0.4, [&before, &now], separation));
-        assert_eq!(recent.get(0), Some(Some(OnFacet { facet: 7, xi: 0.5 })));
-        recent.forget();
-        assert!(!recent.repeats(margin, [&before, &now], separation));
-        recent.begin(margin, [&before, &now]);
-        assert_eq!(recent.get(0), None);
     }
 }

@@ -126,7 +126,7 @@ impl Surface {
     }
 
     /// A facet of the boundary.
-    pub(crate) fn facet(&self, facet: usize) -> Facet<'_> {
+    pub fn facet(&self, facet: usize) -> Facet<'_> {
         Facet { shape: self.shape, nodes: self.nodes_of(facet), orientation: self.orientations[facet] }
     }
 
@@ -310,19 +310,4 @@ const PATH_MARGIN: f64 = 0.1;
 pub(crate) fn path(ends: [&[f64]; 2]) -> Bounds {
     let path: Bounds = ends.iter().collect();
     path.grown(PATH_MARGIN * path.size())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_closed_loop_has_neighbours_everywhere_and_an_open_chain_has_two_ends() {
-        let closed = Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2], vec![2, 0]], &[1.0; 3]);
-        assert_eq!(closed.neighbour(2, true), Some(0));
-        assert_eq!(closed.neighbour(0, false), Some(2));
-        let open = Surface::new(FacetShape::L3, &[vec![0, 1, 7], vec![1, 2, 8]], &[1.0; 2]);
-        assert_eq!((open.neighbour(0, false), open.neighbour(1, true)), (None, None));
-        assert_eq!(open.facet(1).nodes, [1, 2, 8]);
-    }
 }

@@ -22,7 +22,7 @@ use carom_solid::FacetShape;
 pub(super) const SHARE: f64 = 0.01;
 
 /// Accuracy of the largest depth, as a ratio to the allowed depth or to the largest one found.
-const KNOWN: f64 = 1.125;
+pub const KNOWN: f64 = 1.125;
 /// Number of divisions after which an undecided interval counts as deep, for boundaries that no
 /// longer have a size.
 const MOST: usize = 10_000;
@@ -31,7 +31,8 @@ const LEAST: f64 = 0.05;
 
 /// A node relative to a boundary at an instant of its path.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub struct Seen {
+    /// The instant.
     pub theta: f64,
     /// Facet nearest to the node.
     pub facet: usize,
@@ -56,13 +57,15 @@ pub(super) struct Met<X = [f64; 2]> {
 /// Allowed depths on a path: a share of the length of a facet, or the depth that the node has at an
 /// end of its path.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Allowed {
+pub struct Allowed {
+    /// The share.
     pub share: f64,
+    /// The depth at an end.
     pub at_end: f64,
 }
 
 /// The path of a node, or of an edge, relative to a boundary.
-pub(super) trait Way {
+pub trait Way {
     /// The node relative to the boundary at an instant.
     fn seen(&mut self, theta: f64) -> Option<Seen>;
 
@@ -115,7 +118,7 @@ pub(super) fn through(
 
 /// The instant between the `ends` of a path at which the node exceeds the allowed depth most, if it
 /// does; `fastest`: bound of the speed relative to every point of the boundary.
-pub(super) fn deepest(way: &mut impl Way, ends: [Seen; 2], fastest: f64) -> Option<Seen> {
+pub fn deepest(way: &mut impl Way, ends: [Seen; 2], fastest: f64) -> Option<Seen> {
     let mut worst: Option<Seen> = None;
     let mut open = vec![ends];
     for _ in 0..MOST {
@@ -166,7 +169,7 @@ pub(crate) fn amplification(shape: FacetShape) -> f64 {
 /// Bound of the distance between a node and a point that moves along a facet, from ξ₀ to ξ₁ of
 /// `ends`, while all nodes move on straight lines; `offset(end, ξ)`: offset of the node from the
 /// point at ξ, at either end of the interval.
-pub(super) fn most_between<const D: usize>(
+pub fn most_between<const D: usize>(
     shape: FacetShape,
     ends: [[f64; 2]; 2],
     offset: impl Fn(usize, [f64; 2]) -> Vector<D>,
@@ -291,91 +294,4 @@ impl<'a, const D: usize> Between<'a, D> {
 /// leaves: on the same side it has bounced, and may be as deep as at the end of a step.
 pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64) -> f64 {
     if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A depth as a function of θ.
-    struct Curve<F>(F, f64, usize);
-
-    impl<F: Fn(f64) -> f64> Way for Curve<F> {
-        fn seen(&mut self, theta: f64) -> Option<Seen> {
-            self.2 += 1;
-            Some(self.on(theta, self.2, [0.0; 2], (self.0)(theta)))
-        }
-
-        fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
-            Seen { theta, facet, xi, depth, speed: self.1, limit: 0.01 }
-        }
-
-        fn between(&self, _: &Seen, _: &Seen) -> f64 {
-            f64::INFINITY
-        }
-
-        fn normal(&mut self, _: &Seen) -> Vector<3> {
-            Vector::ZERO
-        }
-
-        fn allow(&mut self, _: Allowed) {}
-    }
-
-    #[test]
-    fn a_short_depth_between_two_instants_is_found() {
-        // A spike of slope 8, and none of which the limit is 0.01.
-        for (at, height) in [(0.5, 0.02), (0.313, 0.02), (0.9117, 0.015), (0.02, 0.03)] {
-            let spike = |theta: f64| height - 8.0 * f64::abs(theta - at);
-            let mut way = Curve(spike, 8.0, 0);
-            let ends = [0.0, 1.0].map(|theta| way.seen(theta).unwrap());
-            let found = deepest(&mut way, ends, 8.0).unwrap();
-            assert!(found.depth > height / KNOWN && found.depth <= height, "{found:?}");
-            assert!(way.2 < 100, "{} instants", way.2);
-            let mut flat = Curve(|theta| spike(theta).min(0.0099), 8.0, 0);
-            let ends = [0.0, 1.0].map(|theta| flat.seen(theta).unwrap());
-            assert!(deepest(&mut flat, ends, 8.0).is_none());
-        }
-    }
-
-    #[test]
-    fn an_offset_is_bounded_by_its_polynomial() {
-        // The node slides along a facet that turns: the largest offset of a dense scan is below the
-        // bound, and the bound of a short interval is near it.
-        let shapes = [
-            FacetShape::L2,
-            FacetShape::L3,
-            FacetShape::L4,
-            FacetShape::T3,
-            FacetShape::T6,
-            FacetShape::T10,
-            FacetShape::Q4,
-            FacetShape::Q9,
-        ];
-        for (round, shape) in shapes.into_iter().enumerate() {
-            let number = |k: usize| (1.7 * (k + 31 * round) as f64).sin();
-            let places = |shift: usize| -> Vec<Vector<3>> {
-                (0..=shape.nodes()).map(|n| Vector([0, 1, 2].map(|i| number(shift + 3 * n + i)))).collect()
-            };
-            let both = [places(0), places(57)];
-            let ends = [[0.1, 0.2], [0.6, 0.3]];
-            let offset = |late: f64, xi: [f64; 2]| {
-                let at = |n: usize| both[0][n] * (1.0 - late) + both[1][n] * late;
-                let values = shape.functions(xi).values;
-                (0..shape.nodes()).fold(at(shape.nodes()), |sum, n| sum - at(n) * values[n])
-            };
-            let xi = |t: f64| [0, 1].map(|i: usize| ends[0][i] + t * (ends[1][i] - ends[0][i]));
-            let most = |[low, high]: [f64; 2]| {
-                let at = [xi(low), xi(high)];
-                most_between(shape, at, |end, xi| offset([low, high][end], xi))
-            };
-            let scan = |low: f64, high: f64| {
-                let at = |k: i32| low + (high - low) * f64::from(k) / 500.0;
-                (0..=500).map(|k| offset(at(k), xi(at(k))).norm()).fold(0.0, f64::max)
-            };
-            assert!(scan(0.0, 1.0) <= most([0.0, 1.0]) * (1.0 + 1e-12), "{shape:?}");
-            let near = scan(0.4, 0.41);
-            let bound = most([0.4, 0.41]);
-            assert!(near <= bound * (1.0 + 1e-12) && bound < near * (1.0 + 1e-3), "{shape:?} {near} {bound}");
-        }
-    }
 }

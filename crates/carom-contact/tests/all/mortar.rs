@@ -202,8 +202,8 @@ fn derivatives_of_partly_facing_points_agree_with_differences() {
     }
 }
 
-/// Over a joint at which the primary turns, where surfaces touch, the second derivative includes the
-/// motion of that joint.
+/// Over a joint at which the primary turns, where surfaces touch, the second derivative includes
+/// the motion of that joint.
 #[test]
 fn derivatives_over_a_joint_of_the_primary_agree_with_differences() {
     for (shape, turn) in SHAPES.into_iter().flat_map(|shape| [(shape, 0.1), (shape, -0.1)]) {

@@ -2,9 +2,9 @@
 
 pub(crate) mod overlap;
 pub(crate) mod overlapping;
-pub(crate) mod penetration;
+pub mod penetration;
 pub(crate) mod skins;
 pub(crate) mod tips;
 pub(crate) mod undeclared;
-pub(crate) mod valid_cells;
+pub mod valid_cells;
 pub(crate) mod watched;

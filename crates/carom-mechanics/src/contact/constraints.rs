@@ -21,7 +21,7 @@ const LOOSE: f64 = 1e100;
 
 /// A row of a linear system, apart from its gradient and the direction of its force.
 #[derive(Clone, Debug)]
-pub(crate) struct Constraint {
+pub struct Constraint {
     /// Contact and pair.
     pub place: (usize, usize),
     /// The components of a slip that is prevented; others are gaps.
@@ -62,7 +62,8 @@ impl Constraint {
 
 /// Rows of a linear system.
 #[derive(Clone, Debug)]
-pub(crate) struct Constraints {
+pub struct Constraints {
+    /// What the rows are, in their order.
     pub list: Vec<Constraint>,
     /// Gradients of the gaps.
     pub rows: Rows,
@@ -77,7 +78,7 @@ pub(crate) struct Constraints {
 
 impl Constraints {
     /// No rows.
-    pub(crate) fn none(dimension: usize) -> Self {
+    pub fn none(dimension: usize) -> Self {
         let [rows, directions] = [Rows::new(dimension), Rows::new(dimension)];
         Self { list: Vec::new(), rows, directions, is_skew: false, dropped: Vec::new() }
     }
@@ -101,7 +102,7 @@ impl Constraints {
     }
 
     /// The rows of an evaluation, with second derivatives.
-    pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
+    pub fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let model = equations.model;
         let mut constraints = Self::none(model.dimension);
         let mut rows = Rows::new(model.dimension);
@@ -260,12 +261,12 @@ impl Constraints {
     }
 
     /// Number of rows.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.list.len()
     }
 
     /// Whether there are no rows.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 

@@ -119,7 +119,7 @@ fn slip_of(slips: &Rows, pair: usize) -> Along {
 
 impl Evaluation {
     /// S of a pair with friction.
-    pub(crate) fn slip_of(&self, (contact, pair): (usize, usize)) -> Along {
+    pub fn slip_of(&self, (contact, pair): (usize, usize)) -> Along {
         slip_of(&self.slips[contact], pair)
     }
 

@@ -1,7 +1,7 @@
 //! Contact and friction in the equations of a stage.
 
 pub(crate) mod augmented;
-pub(crate) mod constraints;
+pub mod constraints;
 pub(crate) mod forces;
 pub(crate) mod friction;
 pub(crate) mod friction_tangent;

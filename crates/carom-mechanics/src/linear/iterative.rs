@@ -30,7 +30,7 @@ const ROUND_OFF: f64 = 1e-15;
 const MOST: usize = 5000;
 
 /// The frozen tangent of the bodies, and what solves with it.
-pub(crate) struct Iterative {
+pub struct Iterative {
     matrix: NodeMatrix,
     /// Slots of the stored blocks of each cell, by rows, cell after cell over all bodies.
     slots: Vec<u32>,
@@ -55,7 +55,7 @@ pub(crate) struct Iterative {
 
 impl Iterative {
     /// The structure for the bodies of a model.
-    pub(crate) fn new(model: &Model) -> Self {
+    pub fn new(model: &Model) -> Self {
         let d = model.dimension;
         let matrix = NodeMatrix::new(d, coupled(model)).on(&model.threads);
         let mut slots = Vec::new();

@@ -21,11 +21,14 @@ const SKIP: u32 = u32::MAX;
 const CARRIED: u32 = u32::MAX - 1;
 
 /// The matrices of a model.
-pub(crate) struct Matrices {
+pub struct Matrices {
+    /// The entries that all three store.
     pub pattern: Arc<Pattern>,
+    /// K.
     pub stiffness: Vec<f64>,
+    /// M.
     pub mass: Vec<f64>,
-    /// Empty without follower loads.
+    /// The symmetric part of K_ext; empty without follower loads.
     pub follower: Vec<f64>,
     /// Slots of each cell's pairs of dofs, the lower triangle by rows, cell after cell over all
     /// bodies.
@@ -36,7 +39,7 @@ pub(crate) struct Matrices {
 
 impl Matrices {
     /// Pattern and slots of the bodies of a model.
-    pub(crate) fn new(model: &Model) -> Self {
+    pub fn new(model: &Model) -> Self {
         let pattern = Arc::new(pattern(model));
         let mut slots = Vec::new();
         for part in &model.parts {
@@ -75,7 +78,7 @@ impl Matrices {
 
     /// Assembles the symmetric part of the loads' tangent at a time and positions `y`, which matter
     /// in space only.
-    pub(crate) fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
+    pub fn assemble_loads(&mut self, model: &Model, time: f64, y: &[f64]) -> Result<(), Rejected> {
         let mut at = LoadsAt::default();
         let mut slots = self.facet_slots.iter();
         model.loads.at(&model.parts, model.dofs(), time, &mut at)?;
@@ -110,7 +113,7 @@ impl Matrices {
     ///
     /// # Errors
     /// If a cell is inverted there.
-    pub(crate) fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<Vec<f64>, Rejected> {
+    pub fn assemble(&mut self, model: &Model, at: &Configuration) -> Result<Vec<f64>, Rejected> {
         self.stiffness.fill(0.0);
         let Self { slots, stiffness, pattern, .. } = self;
         let mut slots = slots.iter();

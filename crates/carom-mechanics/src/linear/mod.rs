@@ -1,9 +1,9 @@
 //! Linear systems of a model: matrices, and what solves with them.
 
-pub(crate) mod direct;
-pub(crate) mod iterative;
-pub(crate) mod matrices;
-pub(crate) mod preconditioner;
-pub(crate) mod system;
+pub mod direct;
+pub mod iterative;
+pub mod matrices;
+pub mod preconditioner;
+pub mod system;
 pub(crate) mod tangents;
 pub(crate) mod wholes;

@@ -20,7 +20,7 @@ use crate::stage::renewal::Point;
 use carom_solid::Configuration;
 
 /// Solves with the tangent of a point, or with the mass.
-pub(crate) trait Preconditioner: Send + Sync {
+pub trait Preconditioner: Send + Sync {
     /// Cost of forming a tangent, in solves with it.
     fn cost(&self) -> f64;
 

@@ -19,7 +19,7 @@ use crate::stage::renewal::{Point, Renewal};
 use carom_solid::Configuration;
 
 /// The preconditioner of a model.
-pub(crate) struct System {
+pub struct System {
     pub(crate) preconditioner: Box<dyn Preconditioner>,
     /// Tangents and masses formed so far.
     pub factorisations: u64,

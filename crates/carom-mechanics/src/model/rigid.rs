@@ -1,10 +1,10 @@
 //! Rigid modes that supports leave free. Without inertia only contact can constrain them; otherwise
 //! there is no equilibrium.
 //!
-//! The rigid modes of a piece of a body are its translations and rotations about its centre, u = t +
-//! ω × (x − c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs
-//! (supports), ties and active contacts (their gradients) are rows over these few unknowns; the null
-//! space of the rows is free. Pieces that ties connect have modes together.
+//! The rigid modes of a piece of a body are its translations and rotations about its centre,
+//! u = t + ω × (x − c)/size: one in dimension 1, three in the plane, six in space. Constrained dofs
+//! (supports), ties and active contacts (their gradients) are rows over these few unknowns; the
+//! null space of the rows is free. Pieces that ties connect have modes together.
 
 use std::sync::Arc;
 

@@ -23,7 +23,7 @@ use crate::state::State;
 
 /// The forces of one evaluation, flat over all dofs.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Forces {
+pub struct Forces {
     /// M a(d).
     pub inertia: Vec<f64>,
     /// f_int.

@@ -25,13 +25,16 @@ const BLOCK: usize = 4096;
 
 /// The equations of a stage.
 #[derive(Debug)]
-pub(crate) struct Equations<'a> {
+pub struct Equations<'a> {
+    /// Bodies, loads and contacts.
     pub model: &'a Model,
     /// The state at the step's start.
     pub state: &'a State,
+    /// The weights of its balance, and its acceleration.
     pub stage: Stage,
-    /// The time at which internal forces are evaluated, and the loads then.
+    /// The time at which internal forces are evaluated.
     pub time: f64,
+    /// The loads then.
     pub loads: LoadsAt,
     /// Prescribed dofs at the stage's end.
     pub motions: Vec<Prescribed>,
@@ -51,7 +54,7 @@ impl<'a> Equations<'a> {
     ///
     /// # Errors
     /// If a load or a motion has no value.
-    pub(crate) fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
+    pub fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
         let average = stage.average;
         let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
         let mut equations = Self {
@@ -146,7 +149,7 @@ impl<'a> Equations<'a> {
     ///
     /// # Errors
     /// If a cell is inverted, or an active pair has no gap.
-    pub(crate) fn evaluate(
+    pub fn evaluate(
         &self,
         at: Iterate,
         spare: &mut Spare,

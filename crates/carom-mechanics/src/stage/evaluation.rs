@@ -10,7 +10,7 @@ use crate::state::State;
 /// The unknowns of a stage.
 #[derive(Debug, Default, Educe)]
 #[educe(Clone)]
-pub(crate) struct Iterate {
+pub struct Iterate {
     /// d = y − y_s.
     pub increment: Vec<f64>,
     /// Pairs of each contact, multipliers included.
@@ -21,7 +21,7 @@ pub(crate) struct Iterate {
 
 impl Iterate {
     /// The start of a step: no increment, the pairs of the state.
-    pub(crate) fn at_start(state: &State) -> Self {
+    pub fn at_start(state: &State) -> Self {
         let pairings = state.pairs.iter().cloned().map(Pairing::new).collect();
         Self { increment: vec![0.0; state.y.len()], pairings, stiffer: 0 }
     }
@@ -44,7 +44,7 @@ impl Iterate {
 
 /// Results at an iterate.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Evaluation {
+pub struct Evaluation {
     /// The iterate, with contact points updated to its positions and the activity of springs set.
     pub at: Iterate,
     /// y = y_s + d.
@@ -96,7 +96,7 @@ impl Evaluation {
 
 /// Size of a residual and its reference.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Measure {
+pub struct Measure {
     /// ‖r‖ over the free dofs.
     pub residual: f64,
     /// Sum of the norms of its terms.
@@ -109,7 +109,7 @@ pub(crate) struct Measure {
 
 /// Unused evaluations, whose memory is reused.
 #[derive(Debug, Default)]
-pub(crate) struct Spare(Vec<Evaluation>);
+pub struct Spare(Vec<Evaluation>);
 
 impl Spare {
     /// An evaluation to be filled.

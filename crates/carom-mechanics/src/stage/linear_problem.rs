@@ -63,7 +63,7 @@ pub(crate) struct Goal {
 
 /// Right-hand sides, buffers and the history of corrections.
 #[derive(Debug, Default)]
-pub(crate) struct LinearProblem {
+pub struct LinearProblem {
     forces: Vec<f64>,
     gaps: Vec<f64>,
     increment: Vec<f64>,
@@ -191,19 +191,21 @@ impl LinearProblem {
         Ok(())
     }
 
-    /// The matrix times increments and multipliers, for tests.
-    #[cfg(test)]
-    pub(crate) fn product(
+    /// The matrix times increments and multipliers.
+    ///
+    /// # Errors
+    /// If a cell is inverted where the tangent is applied.
+    pub fn product(
         equations: &Equations,
         now: &Evaluation,
         rows: &Constraints,
         [increment, multipliers]: [Vec<f64>; 2],
-    ) -> [Vec<f64>; 2] {
+    ) -> Result<[Vec<f64>; 2], Rejected> {
         let forces = vec![0.0; increment.len()];
         let gaps = vec![0.0; multipliers.len()];
         let mut problem = Self { forces, gaps, increment, multipliers, ..Self::default() };
-        problem.subtract_product(equations, now, rows, &mut Timings::default()).unwrap();
-        [problem.forces, problem.gaps].map(|right| right.iter().map(|value| -value).collect())
+        problem.subtract_product(equations, now, rows, &mut Timings::default())?;
+        Ok([problem.forces, problem.gaps].map(|right| right.iter().map(|value| -value).collect()))
     }
 
     /// Subtracts the effect of the last correction from the right-hand sides.

@@ -13,7 +13,7 @@ pub(crate) fn pressing(state: &State) -> impl Iterator<Item = (usize, usize)> + 
 }
 
 /// Rows of all active pairs at the state; those of inactive ones are open.
-pub(crate) fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>, Rejected> {
+pub fn measure_all(model: &Model, state: &mut State) -> Result<Vec<Rows>, Rejected> {
     measure(model, state, |_, _, pair| pair.active)
 }
 

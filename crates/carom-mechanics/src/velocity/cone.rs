@@ -10,9 +10,10 @@
 //! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
 //! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
 //! in their direction, or in that of the step before. All rows are equalities, as without friction:
-//! a closed gap stays closed, and one whose p is tensile remains closed: it sticks with |q| ≤ μp, or
-//! slips with q = −μp d. So the solution depends continuously on μ, and tangential impulses are at
-//! most μ times the normal ones. For accelerations `persistency.rs` chooses pairs of which none pulls.
+//! a closed gap stays closed, and one whose p is tensile remains closed: it sticks with |q| ≤ μp,
+//! or slips with q = −μp d. So the solution depends continuously on μ, and tangential impulses are
+//! at most μ times the normal ones. For accelerations `persistency.rs` chooses pairs of which none
+//! pulls.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;

@@ -187,28 +187,12 @@ fn settle(
 
 /// f of ½ a f² + b f = owed, a > 0: the larger root, with which nodes separate; the vertex if there
 /// is none; 0 if nothing can be taken from nodes that do not separate.
-fn root(a: f64, b: f64, owed: f64) -> f64 {
+pub fn root(a: f64, b: f64, owed: f64) -> f64 {
     let discriminant = (b * b + 2.0 * a * owed).max(0.0).sqrt();
     match (owed > 0.0, b > 0.0) {
         (true, true) => 2.0 * owed / (b + discriminant),
         (true, false) => (discriminant - b) / a,
         (false, true) => (2.0 * owed / (b + discriminant)).max(-b / a),
         (false, false) => 0.0,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::root;
-
-    #[test]
-    fn the_root_returns_the_energy_or_what_nodes_can_lose() {
-        for (a, b, owed) in [(2.0, 3.0, 1.0), (2.0, 0.0, 1.0), (2.0, -3.0, 1.0), (2.0, 3.0, -1.0)] {
-            let factor: f64 = root(a, b, owed);
-            assert!((0.5 * a * factor * factor + b * factor - owed).abs() < 1e-15, "{a} {b} {owed}");
-            assert_eq!(factor > 0.0, owed > 0.0);
-        }
-        assert_eq!(root(2.0, 3.0, -3.0), -1.5);
-        assert_eq!(root(2.0, -3.0, -1.0), 0.0);
     }
 }

@@ -12,9 +12,9 @@ use super::samples::{at, integral};
 use crate::{History, Run};
 
 /// Metrics of the contact force that depend on single rows.
-const OF_FORCE: [&str; 3] = ["peak_force", "force_roughness", "force_high_frequency"];
+pub const OF_FORCE: [&str; 3] = ["peak_force", "force_roughness", "force_high_frequency"];
 /// Metrics of a column that depend on single rows.
-const OF_COLUMN: [&str; 4] = ["min", "max", "roughness", "high_frequency"];
+pub const OF_COLUMN: [&str; 4] = ["min", "max", "roughness", "high_frequency"];
 
 /// The metrics that depend on single rows, of the averaged record; empty without a contact episode.
 pub fn of_averages(run: &Run) -> Vec<Metric> {
@@ -35,7 +35,7 @@ pub fn of_averages(run: &Run) -> Vec<Metric> {
 
 /// A history with some columns replaced by their means from t − w/2 to t + w/2, or to the ends of
 /// the record, with the trapezoidal rule between rows.
-fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> History {
+pub fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> History {
     let times = history.times();
     let first = times.first().copied().unwrap_or(0.0);
     let last = times.last().copied().unwrap_or(0.0);
@@ -52,38 +52,4 @@ fn averaged(history: &History, window: f64, of: impl Fn(&str) -> bool) -> Histor
     let columns = history.columns.iter().zip(&history.values);
     let values = columns.map(|(column, values)| if of(&column.name) { mean(values) } else { values.clone() });
     History::new(history.columns.clone(), values.collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Column;
-    use crate::metrics::table::{COLUMNS, HISTORY};
-
-    #[test]
-    fn the_metrics_of_single_rows_exist() {
-        assert!(OF_FORCE.iter().all(|name| HISTORY.iter().any(|d| d.name == *name)));
-        assert!(OF_COLUMN.iter().all(|name| COLUMNS.iter().any(|d| d.name == *name)));
-    }
-
-    /// By hand: the mean of t over any window inside is t, at the ends it is that of half a window;
-    /// of a single spike of 1 over two rows of a window of two steps it is 1/2.
-    #[test]
-    fn means_by_hand() {
-        let column = |name: &str| Column {
-            name: name.into(),
-            unit: String::new(),
-            description: String::new(),
-            integer: false,
-        };
-        let times: Vec<f64> = (0..11).map(f64::from).collect();
-        let mut spike = vec![0.0; 11];
-        spike[5] = 1.0;
-        let names = ["time", "ramp", "spike"].map(column).to_vec();
-        let history = History::new(names, vec![times.clone(), times, spike]);
-        let averaged = averaged(&history, 2.0, |name| name != "time");
-        let ramp = averaged.column("ramp").unwrap();
-        assert_eq!((ramp[0], ramp[4], ramp[10]), (0.5, 4.0, 9.5));
-        assert_eq!(averaged.column("spike").unwrap()[4..7], [0.25, 0.5, 0.25]);
-    }
 }

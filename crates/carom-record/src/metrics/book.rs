@@ -47,18 +47,3 @@ fn row(before: &str, Definition { name, unit, formula, source, meaning, .. }: &D
     let [meaning, formula, source] = [meaning, formula, source].map(|text| escape(text));
     format!("| `{before}{name}` | {meaning} | {formula} | {} | {source} |\n", unit.word())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_row_has_five_cells_and_no_emphasis() {
-        for line in book_table().lines().skip(2) {
-            let bare = line.replace("\\|", "").replace("\\_", "").replace("\\*", "");
-            assert_eq!(bare.matches('|').count(), 6, "{line}");
-            let code = bare.split('`').skip(2).collect::<String>();
-            assert!(!code.contains(['_', '*']), "{line}");
-        }
-    }
-}

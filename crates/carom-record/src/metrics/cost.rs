@@ -48,17 +48,3 @@ pub fn cost(counters: &BTreeMap<String, u64>) -> Option<f64> {
     let costs: Vec<f64> = KERNELS.iter().filter_map(calls).collect();
     (!costs.is_empty()).then(|| costs.iter().sum())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// By hand: 3 steps with 7 iterations and 2 factorisations cost 15 + 14 + 20.
-    #[test]
-    fn costs_by_hand() {
-        let counters = [("steps", 3), ("newton", 7), ("factorisations", 2), ("activations", 99)];
-        let counters = counters.map(|(name, calls)| (name.to_owned(), calls)).into();
-        assert_eq!(cost(&counters), Some(49.0));
-        assert_eq!(cost(&BTreeMap::new()), None);
-    }
-}

@@ -8,7 +8,7 @@ use crate::{History, units};
 
 /// Definition of a metric.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Definition {
+pub struct Definition {
     /// Name in expectations and studies.
     pub name: &'static str,
     /// Unit of the metric.

@@ -8,7 +8,7 @@ use crate::{History, Overlay, Run};
 /// A history with its contact episodes; where a metric needs them, the run, a column or measured
 /// data.
 #[derive(Clone, Debug)]
-pub(crate) struct Given<'a> {
+pub struct Given<'a> {
     pub(crate) history: &'a History,
     pub(super) episodes: Vec<Episode>,
     pub(crate) run: Option<&'a Run>,
@@ -18,7 +18,8 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    pub(crate) fn of(history: &'a History) -> Self {
+    /// The whole history.
+    pub fn of(history: &'a History) -> Self {
         let episodes = episodes(history, default_bridge(history));
         Self { history, episodes, run: None, column: None, measured: None }
     }
@@ -27,11 +28,13 @@ impl<'a> Given<'a> {
         Self { run: Some(run), ..Self::of(&run.history) }
     }
 
-    pub(crate) fn with_column(&self, column: &'a str) -> Self {
+    /// With a column that a metric is computed of.
+    pub fn with_column(&self, column: &'a str) -> Self {
         Self { column: Some(column), ..self.clone() }
     }
 
-    pub(crate) fn beside(&self, measured: &'a Overlay) -> Self {
+    /// Beside measured data of a column.
+    pub fn beside(&self, measured: &'a Overlay) -> Self {
         Self { column: Some(&measured.column), measured: Some(measured), ..self.clone() }
     }
 

@@ -3,12 +3,15 @@
 use super::run_table::{PRESSURE, WORK};
 
 /// A heading, and the metrics below it.
-struct Group {
-    title: &'static str,
-    names: &'static [&'static str],
+pub struct Group {
+    /// The heading.
+    pub title: &'static str,
+    /// Names of its metrics, without what follows a colon.
+    pub names: &'static [&'static str],
 }
 
-const GROUPS: [Group; 7] = [
+/// All headings but that of probes.
+pub const GROUPS: [Group; 7] = [
     Group {
         title: "Contact",
         names: &[
@@ -70,27 +73,4 @@ pub fn group(name: &str) -> &'static str {
         return TITLES[7];
     }
     if WORK.iter().any(|definition| definition.name == name) { TITLES[9] } else { TITLES[8] }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::metrics::OVERLAY;
-    use crate::metrics::run_table::REBOUND;
-    use crate::metrics::table::HISTORY;
-
-    /// Every metric of a history has a heading of its own kind; what has none is of a probe.
-    #[test]
-    fn every_metric_has_a_heading() {
-        for definition in &HISTORY {
-            assert_ne!(group(definition.name), "Probes", "{}", definition.name);
-        }
-        assert_eq!(group("energy_lost:3"), "Energy");
-        assert_eq!(group("A.sigma_yy:peak_mean"), "Probes");
-        assert_eq!(group("cpu_time"), "Computational work");
-        let names = GROUPS.iter().flat_map(|group| group.names);
-        let known = |name: &&&str| HISTORY.iter().chain(&REBOUND).chain(&OVERLAY).any(|d| d.name == **name);
-        assert!(names.clone().all(|name| known(&name)));
-        assert_eq!(names.count(), HISTORY.len() + REBOUND.len() + OVERLAY.len());
-    }
 }

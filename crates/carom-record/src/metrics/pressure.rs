@@ -20,7 +20,7 @@ use crate::{ContactRow, Run};
 ///
 /// Needs three different coordinates (two in a half model); none if the fitted parabola has no
 /// maximum.
-pub(super) fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
+pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let first = places.iter().copied().reduce(f64::min)?;
     let last = places.iter().copied().reduce(f64::max)?;
     let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
@@ -146,35 +146,4 @@ pub(crate) fn largest_traction(run: &Run) -> Option<f64> {
 pub(crate) fn ellipse(run: &Run) -> Option<(f64, f64)> {
     let rows = at_rest(run)?;
     hertz(&places(run, &rows, |row| [row.point[0], row.point[1]])?, &pressures(&rows))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Points of an ellipse with any centre give the ellipse, and so does a half of it.
-    #[test]
-    fn an_ellipse_is_found() {
-        let p0 = 0.025;
-        let a = 0.05;
-        let c = 3.0;
-        let ellipse = |s: f64| p0 * (1.0 - ((s - c) / a).powi(2)).max(0.0).sqrt();
-        for range in [-7..=8, 0..=9, -9..=0] {
-            let places: Vec<f64> = range.map(|i| c + 0.1 * a * f64::from(i)).collect();
-            let pressures: Vec<f64> = places.iter().map(|s| ellipse(*s)).collect();
-            let (peak, half) = hertz(&places, &pressures).unwrap();
-            assert!((peak / p0 - 1.0).abs() < 1e-9 && (half / a - 1.0).abs() < 1e-9, "{peak} {half}");
-        }
-    }
-
-    /// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2. A single point, or
-    /// constant pressure, gives no ellipse.
-    #[test]
-    fn few_points() {
-        let (peak, half) = hertz(&[0.0, 1.0, 2.0], &[2.0, 3.0_f64.sqrt(), 0.0]).unwrap();
-        assert!((peak - 2.0).abs() < 1e-12 && (half - 2.0).abs() < 1e-12);
-        assert_eq!(hertz(&[0.0], &[1.0]), None);
-        assert_eq!(hertz(&[], &[]), None);
-        assert_eq!(hertz(&[0.0, 1.0], &[1.0, 1.0]), None);
-    }
 }

@@ -9,7 +9,7 @@ use super::rebound::restitution;
 use crate::units::Unit;
 
 /// Metrics of the bodies of the first episode.
-pub(super) const REBOUND: [Definition; 1] = [d(
+pub const REBOUND: [Definition; 1] = [d(
     "restitution",
     Unit::None,
     "−(w⁺·n)/(w⁻·n), w = v − v_other, n = Σ −λ n_c",

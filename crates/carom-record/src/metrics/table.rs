@@ -11,7 +11,7 @@ use super::{force, ledger, oscillation};
 use crate::units::Unit;
 
 /// Metrics of a history.
-pub(super) const HISTORY: [Definition; 29] = [
+pub const HISTORY: [Definition; 29] = [
     d(
         "contact_start",
         Unit::Time,
@@ -235,7 +235,7 @@ pub(super) const HISTORY: [Definition; 29] = [
 ];
 
 /// Metrics of the column `C` of a probe, named `C:min` etc.
-pub(super) const COLUMNS: [Definition; 5] = [
+pub const COLUMNS: [Definition; 5] = [
     d("min", Unit::Column, "min c", OWN, "smallest recorded value of the column", |f| {
         Some(extreme(f.values()?, f64::lt)?.1)
     }),

@@ -56,7 +56,7 @@ pub fn step(arm: &Arm, key: &str) -> Option<f64> {
 
 /// The number of an arm for a key, of any sign: the value it sets, or that of its case. Of arrays
 /// only numbers of cells are numbers, 1/n of the first direction.
-pub(super) fn scalar(arm: &Arm, key: &str) -> Option<f64> {
+pub fn scalar(arm: &Arm, key: &str) -> Option<f64> {
     if counts_cells(key) {
         return step(arm, key);
     }
@@ -80,31 +80,4 @@ fn of_case(arm: &Arm, key: &str) -> Option<f64> {
 
 fn number(text: &str) -> Option<f64> {
     text.trim().replace('_', "").parse().ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_the_step_is_the_step() {
-        assert!(sets_step("time.step=1") && sets_step(" time.step = 1e-3"));
-        assert!(!sets_step("time.stepper=1") && !sets_step("title=time.step"));
-    }
-
-    #[test]
-    fn numbers_have_any_sign_and_are_no_arrays() {
-        let arm = |set: &str| Arm {
-            sets: vec![set.to_owned()],
-            case: serde_json::json!({ "friction": -0.5 }),
-            ..Arm::default()
-        };
-        assert_eq!(scalar(&arm("a.v=-2"), "a.v"), Some(-2.0));
-        assert_eq!(scalar(&arm("a.v = 0"), "a.v"), Some(0.0));
-        assert_eq!(scalar(&arm("a.v=1_000"), "friction"), Some(-0.5));
-        assert_eq!(scalar(&arm("a.v=[0, -2]"), "a.v"), None);
-        assert_eq!(scalar(&arm("a.v=inf"), "a.v"), None);
-        assert_eq!(scalar(&arm("a.mesh.cells=[8, 4]"), "a.mesh.cells"), Some(0.125));
-        assert_eq!(scalar(&arm("refine=4"), "refine"), Some(0.25));
-    }
 }

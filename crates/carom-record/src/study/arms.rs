@@ -57,7 +57,8 @@ impl ArmRecords {
         }
     }
 
-    pub(super) fn put_metric(&mut self, arm: &str, name: &str, value: f64) {
+    /// Adds a metric of an arm.
+    pub fn put_metric(&mut self, arm: &str, name: &str, value: f64) {
         self.metrics.insert((arm.to_owned(), name.to_owned()), Ok(value));
     }
 

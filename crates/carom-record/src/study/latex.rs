@@ -35,13 +35,14 @@ const SIGNS: [(char, &str); 24] = [
     ('–', "--"),
 ];
 
-fn escaped(text: &str) -> String {
+/// A text with the characters that LaTeX reserves.
+pub fn escaped(text: &str) -> String {
     let sign = |c: char| SIGNS.iter().find(|(sign, _)| *sign == c).map(|(_, written)| *written);
     text.chars().map(|c| sign(c).map_or_else(|| c.to_string(), str::to_owned)).collect()
 }
 
 /// A number in mathematical notation.
-fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     let text = short(x);
     match text.split_once('e') {
         Some((digits, power)) => format!("${digits}\\times10^{{{power}}}$"),
@@ -80,16 +81,5 @@ impl Study {
             ranked.noise.map_or_else(String::new, number),
             format!("{:.0}", ranked.cost),
         ]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn texts_and_numbers_are_written_for_latex() {
-        assert_eq!(escaped("CH_a, ρ∞ = 50 %"), "CH\\_a, $\\rho$$_\\infty$ = 50 \\%");
-        assert_eq!([number(1.875e-4), number(0.25)], ["$1.88\\times10^{-4}$", "0.25"]);
     }
 }

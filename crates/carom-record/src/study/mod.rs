@@ -11,31 +11,41 @@
 //! ```
 
 mod alike;
-mod arm;
+#[doc(hidden)]
+pub mod arm;
 mod arms;
 pub mod checks;
 mod claim;
 pub mod compared;
-mod convergence;
+#[doc(hidden)]
+pub mod convergence;
 pub mod design;
 mod digits;
 pub mod ensemble;
-mod groups;
+#[doc(hidden)]
+pub mod groups;
 mod known;
-mod latex;
-mod levels;
+#[doc(hidden)]
+pub mod latex;
+#[doc(hidden)]
+pub mod levels;
 mod manifest;
-mod measure;
-mod orders;
+#[doc(hidden)]
+pub mod measure;
+#[doc(hidden)]
+pub mod orders;
 mod ranked;
 pub mod ranking;
 pub mod reference;
 mod reference_of;
-mod roles;
+#[doc(hidden)]
+pub mod roles;
 mod row;
 mod tables;
-mod trajectory;
-mod verdict;
+#[doc(hidden)]
+pub mod trajectory;
+#[doc(hidden)]
+pub mod verdict;
 
 use std::path::{Path, PathBuf};
 

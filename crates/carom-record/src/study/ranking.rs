@@ -52,16 +52,20 @@ pub struct Ranking {
 }
 
 /// The data of a study that rankings are made from.
-pub(super) struct Ranks<'a> {
-    pub(super) manifest: &'a StudyManifest,
-    pub(super) rows: &'a [Row],
-    pub(super) compared: &'a [Option<Compared>],
-    pub(super) reference: Option<&'a Reference>,
+pub struct Ranks<'a> {
+    /// What is compared.
+    pub manifest: &'a StudyManifest,
+    /// The results of all runs.
+    pub rows: &'a [Row],
+    /// Their comparison with the reference.
+    pub compared: &'a [Option<Compared>],
+    /// The reference, if it has finished.
+    pub reference: Option<&'a Reference>,
 }
 
 impl Ranks<'_> {
     /// Ranks the arms by a goal. A verdict that another window of averages changes is withheld.
-    pub(super) fn of(&self, goal: Goal) -> Ranking {
+    pub fn of(&self, goal: Goal) -> Ranking {
         let mut ranking = self.with_window(goal, 0);
         let is_averaged = matches!(goal, Goal::Force | Goal::Stress);
         let Some(verdict) = ranking.verdict.as_ref().ok().filter(|_| is_averaged) else { return ranking };
@@ -194,6 +198,3 @@ impl Ranks<'_> {
         is_deep.then(|| format!("it penetrates by {}, {} of the motion", short(own), short(own / motion)))
     }
 }
-
-#[cfg(test)]
-mod tests;

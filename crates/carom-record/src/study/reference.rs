@@ -95,7 +95,7 @@ pub struct Reference {
     pub what: String,
     runs: Levels,
     /// Metrics of the finest run after averaging over a short time.
-    averaged: Vec<Metric>,
+    pub averaged: Vec<Metric>,
     /// Groups of columns in which arms are compared.
     pub known: Vec<Known>,
     /// Uncertainties by column, which take the whole record to compute.
@@ -125,7 +125,7 @@ impl Reference {
 
     /// Determines the groups of columns in which arms are compared; `bodies`: those of the probes;
     /// `window`: the time to average over.
-    pub(super) fn grouped(mut self, bodies: &BTreeMap<String, String>, window: &Result<f64, Reason>) -> Self {
+    pub fn grouped(mut self, bodies: &BTreeMap<String, String>, window: &Result<f64, Reason>) -> Self {
         let Some(finest) = self.finest() else { return self };
         let found = groups(finest, bodies).into_iter();
         self.known = found.filter_map(|group| Known::of(group, &self.runs, window)).collect();
@@ -330,6 +330,3 @@ impl Reference {
         times.iter().zip(values).map(off).collect()
     }
 }
-
-#[cfg(test)]
-mod tests;

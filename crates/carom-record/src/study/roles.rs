@@ -9,7 +9,7 @@ const OF_SECONDARY: [&str; 3] = ["contact_force_", "contact_impulse_", "algorith
 /// Gives the columns of a swapped member the signs of its arm; `facts`: those of arm and member. If
 /// only some contacts are swapped, the sums over all of them have no counterpart in the arm, and
 /// the columns are removed.
-pub(super) fn as_in_arm(history: &mut History, facts: [&Facts; 2]) {
+pub fn as_in_arm(history: &mut History, facts: [&Facts; 2]) {
     let [arm, member] = facts.map(|facts| facts.contacts.iter().map(|contact| &contact.secondary));
     let all_swapped = arm.zip(member).all(|(a, b)| a != b);
     let is_of_secondary = |name: &str| OF_SECONDARY.iter().any(|column| name.starts_with(column));
@@ -25,42 +25,4 @@ pub(super) fn as_in_arm(history: &mut History, facts: [&Facts; 2]) {
     });
     let (columns, values) = kept.unzip();
     *history = History::new(columns, values);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Column, ContactFacts};
-
-    /// With sides a, b and c, d swapped both, signs change; with only one of the two, nothing can
-    /// be said of the sums.
-    #[test]
-    fn sums_over_the_secondary_sides() {
-        let history = |names: [&str; 2]| {
-            let column = |name: &str| Column {
-                name: name.into(),
-                unit: "N".into(),
-                description: String::new(),
-                integer: false,
-            };
-            History::new(names.map(column).to_vec(), vec![vec![1.0, -2.0], vec![3.0, 4.0]])
-        };
-        let case = |sides: [&str; 2]| {
-            let contact = |side: &str| ContactFacts { secondary: side.into(), ..ContactFacts::default() };
-            Facts { contacts: sides.map(contact).into(), ..Facts::default() }
-        };
-        let arm = case(["a", "c"]);
-        let mut all = history(["contact_force_x", "momentum_x"]);
-        as_in_arm(&mut all, [&arm, &case(["b", "d"])]);
-        assert_eq!(
-            (all.column("contact_force_x"), all.column("momentum_x")),
-            (Some(&[-1.0, 2.0][..]), Some(&[3.0, 4.0][..]))
-        );
-        let mut one = history(["contact_impulse_y", "momentum_x"]);
-        as_in_arm(&mut one, [&arm, &case(["b", "c"])]);
-        assert_eq!(
-            (one.column("contact_impulse_y"), one.column("momentum_x")),
-            (None, Some(&[3.0, 4.0][..]))
-        );
-    }
 }

@@ -13,7 +13,7 @@ mod obstacles;
 mod overlaps;
 pub(crate) mod side;
 mod supports;
-mod tie_links;
+pub mod tie_links;
 mod tie_side;
 mod ties;
 mod tying;

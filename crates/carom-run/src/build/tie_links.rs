@@ -18,12 +18,12 @@ struct Link {
 
 /// The links of all ties.
 #[derive(Debug, Default)]
-pub(super) struct Links(BTreeMap<usize, Link>);
+pub struct Links(BTreeMap<usize, Link>);
 
 impl Links {
     /// Ties a node of the secondary side of a tie to a point of its primary side. What follows from
     /// earlier ties is left out, and so is a second facet for nodes that one carries.
-    pub(super) fn tie(&mut self, tie: usize, node: usize, weights: Vec<(usize, f64)>) {
+    pub fn tie(&mut self, tie: usize, node: usize, weights: Vec<(usize, f64)>) {
         let end = self.end(node);
         let other = alone(&weights).map(|carrier| (carrier, self.end(carrier)));
         if other.is_some_and(|(_, other)| other == end) {
@@ -41,7 +41,7 @@ impl Links {
     }
 
     /// The node at the place of a node that no other one there carries.
-    fn end(&self, node: usize) -> usize {
+    pub fn end(&self, node: usize) -> usize {
         let mut end = node;
         while let Some(carrier) = self.0.get(&end).and_then(|link| alone(&link.weights)) {
             end = carrier;
@@ -70,12 +70,12 @@ impl Links {
     }
 
     /// The points.
-    pub(super) fn points(&self) -> Vec<Point> {
+    pub fn points(&self) -> Vec<Point> {
         self.0.iter().map(|(&node, link)| Point { node, weights: link.weights.clone() }).collect()
     }
 
     /// The nodes that a tie makes points, of its secondary and of its primary side.
-    pub(super) fn tied(&self, tie: usize) -> [Vec<usize>; 2] {
+    pub fn tied(&self, tie: usize) -> [Vec<usize>; 2] {
         let own = |turned: bool| {
             let links = self.0.iter().filter(|(_, link)| link.tie == tie && link.turned == turned);
             links.map(|(node, _)| *node).collect()
@@ -94,52 +94,5 @@ fn alone(weights: &[(usize, f64)]) -> Option<usize> {
     match weights {
         [(carrier, _)] => Some(*carrier),
         _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn node(carrier: usize) -> Vec<(usize, f64)> {
-        vec![(carrier, 1.0)]
-    }
-
-    /// Four nodes at one place with any three of their four ties, and the fourth, are one node.
-    #[test]
-    fn a_circle_of_ties_is_closed_by_all_but_one() {
-        let ties = [(0, 1), (2, 3), (0, 2), (3, 1)];
-        for first in 0..4 {
-            let mut links = Links::default();
-            for k in 0..4 {
-                let (secondary, primary) = ties[(first + k) % 4];
-                links.tie(k, secondary, node(primary));
-            }
-            assert_eq!(links.points().len(), 3);
-            let ends: Vec<usize> = (0..4).map(|node| links.end(node)).collect();
-            assert!(ends.iter().all(|end| *end == ends[0]), "{links:?}");
-        }
-    }
-
-    /// Nodes at one place that are tied to a facet as well, in any order, are all carried by it;
-    /// the second facet is left out.
-    #[test]
-    fn one_facet_carries_all_nodes_at_a_place() {
-        let facet = vec![(7, 0.5), (8, 0.5)];
-        let ties = [(0, facet), (0, node(1)), (2, node(1))];
-        for order in [[0, 1, 2], [1, 0, 2], [1, 2, 0], [2, 1, 0]] {
-            let mut links = Links::default();
-            for k in order {
-                let (secondary, primary) = &ties[k];
-                links.tie(k, *secondary, primary.clone());
-            }
-            assert_eq!(links.points().len(), 3, "{links:?}");
-            assert!((0..3).all(|node| links.end(node) == 0), "{links:?}");
-            assert_eq!(links.tied(0), [vec![0], vec![]]);
-            assert_eq!(links.tied(1), [vec![], vec![1]]);
-            assert_eq!(links.tied(2), [vec![2], vec![]]);
-            links.tie(3, 2, vec![(5, 0.5), (6, 0.5)]);
-            assert_eq!(links.points().len(), 3);
-        }
     }
 }

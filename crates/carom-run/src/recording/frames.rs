@@ -4,7 +4,7 @@
 //!
 //! The shortest contact of elastic bodies lasts two crossings of a pressure wave, to the far side
 //! of the thinner body and back. In contact the first frames are therefore so close that
-//! [`FIRST`] of them fit into this time; the distance doubles whenever as many have been written,
+//! `FIRST` of them fit into this time; the distance doubles whenever as many have been written,
 //! until it is that of the regular frames.
 
 use carom_case::Case;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::waves::crossing;
 
 /// Regular frames of a run, if it has that many steps.
-const REGULAR: f64 = 80.0;
+pub const REGULAR: f64 = 80.0;
 /// Fewest regular frames of a large model.
 const FEWEST: f64 = 20.0;
 /// Frames in contact between two doublings of their distance; more than the 20 that a page needs.
@@ -27,19 +27,20 @@ const NODE: f64 = 184.0;
 const BYTES: f64 = 2e9;
 
 /// The steps at which the fields of a run are written.
-pub(super) struct Frames {
+pub struct Frames {
     /// Steps between regular frames; 0: none.
-    every: u64,
+    pub every: u64,
     /// Steps of the requested times.
-    at: Vec<u64>,
+    pub at: Vec<u64>,
     /// Steps between the first frames in contact; none if the case says how often.
-    in_contact: Option<u64>,
-    pub(super) written: Written,
+    pub in_contact: Option<u64>,
+    /// The frames so far.
+    pub written: Written,
 }
 
 /// The frames that were written, as far as the next ones depend on them.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Written {
+pub struct Written {
     /// Step of the last one.
     last: u64,
     /// Number of those between the regular ones.
@@ -68,7 +69,7 @@ impl Frames {
     }
 
     /// Whether the fields of a step are written; `last`: of the run.
-    pub(super) fn take(&mut self, step: u64, last: bool, in_contact: bool) -> bool {
+    pub fn take(&mut self, step: u64, last: bool, in_contact: bool) -> bool {
         let regular = self.every > 0 && (step.is_multiple_of(self.every) || last) || self.at.contains(&step);
         let between = !regular && in_contact && self.is_due_in_contact(step);
         if regular || between {
@@ -83,37 +84,5 @@ impl Frames {
         let distance = self.in_contact.map(|steps| steps << doublings.min(DOUBLINGS));
         doublings <= DOUBLINGS
             && distance.is_some_and(|steps| steps < self.every && step - self.written.last >= steps)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The frames of a run of some steps with contact in a range of them.
-    fn frames(steps: u64, closed: std::ops::Range<u64>, in_contact: u64) -> Vec<u64> {
-        let every = (steps as f64 / REGULAR).round().max(1.0) as u64;
-        let mut frames =
-            Frames { every, at: Vec::new(), in_contact: Some(in_contact), written: Written::default() };
-        (1..=steps).filter(|&step| frames.take(step, step == steps, closed.contains(&step))).collect()
-    }
-
-    #[test]
-    fn a_short_contact_has_twenty_frames() {
-        let found = frames(10_000, 4001..4241, 10);
-        assert!(found.iter().filter(|step| (4001..4241).contains(*step)).count() >= 20);
-        assert_eq!(found.iter().find(|step| **step > 4000), Some(&4010));
-        assert!(found.len() < 120, "{}", found.len());
-    }
-
-    #[test]
-    fn a_million_steps_in_contact_have_few_frames() {
-        let found = frames(1_000_000, 1..1_000_001, 100);
-        assert!((100..=155).contains(&found.len()), "{}", found.len());
-    }
-
-    #[test]
-    fn a_short_run_writes_every_step() {
-        assert_eq!(frames(60, 10..20, 1).len(), 60);
     }
 }

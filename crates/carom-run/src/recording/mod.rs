@@ -2,7 +2,8 @@
 
 mod columns;
 mod fields;
-mod frames;
+#[doc(hidden)]
+pub mod frames;
 mod log;
 mod outcome;
 mod rows;

@@ -387,8 +387,8 @@ fn a_uniform_pressure_is_uniform_with_multipliers_and_springs() {
 
 /// A block slides over the joint of two flush tables. It is carried by normal forces whose impulse
 /// is that of its weight but for what its height oscillates, so that friction takes μ g t from its
-/// velocity, whichever side is secondary. At the ends of the tables coefficients of the pressure gain
-/// and lose their partners within a step.
+/// velocity, whichever side is secondary. At the ends of the tables coefficients of the pressure
+/// gain and lose their partners within a step.
 #[test]
 fn friction_over_a_joint_takes_no_more_than_mu_times_the_weight() {
     let joint = |element: &str, cells: usize, sides: [[&str; 2]; 2]| {
@@ -464,8 +464,8 @@ fn a_shear_limit_counts_every_area_once() {
     }
 }
 
-/// A block that drops on a slab, and half of both on rollers in the plane of symmetry: under friction,
-/// too, they move alike. The tangential traction is zero in that plane.
+/// A block that drops on a slab, and half of both on rollers in the plane of symmetry: under
+/// friction, too, they move alike. The tangential traction is zero in that plane.
 #[test]
 fn half_a_model_with_friction_moves_like_the_whole() {
     let model = |from: f64, share: usize, support: &str| {

@@ -43,22 +43,22 @@ struct Entry {
 
 /// Yield stress at a plastic strain, and the energy that hardening has stored there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Strength {
+pub struct Strength {
     /// σ_y.
-    pub(super) stress: f64,
+    pub stress: f64,
     /// ∫ (σ_y − σ_y(0)) dα from zero: what hardening stores.
-    pub(super) stored: f64,
+    pub stored: f64,
 }
 
 /// Plastic flow in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Flow {
+pub struct Flow {
     /// Δα.
-    pub(super) strain: f64,
+    pub strain: f64,
     /// dσ_y/dα at the end.
-    pub(super) slope: f64,
+    pub slope: f64,
     /// ∫ (σ_y − σ_y(α)) dα over the step.
-    pub(super) hardening: f64,
+    pub hardening: f64,
 }
 
 impl Table {
@@ -134,7 +134,7 @@ impl Hardening {
 
     /// The yield stress at α.
     #[inline(always)]
-    pub(super) fn at(&self, alpha: f64) -> Strength {
+    pub fn at(&self, alpha: f64) -> Strength {
         match self {
             Self::Linear { yield_stress, modulus } => {
                 Strength { stress: yield_stress + modulus * alpha, stored: 0.5 * modulus * alpha * alpha }
@@ -153,7 +153,7 @@ impl Hardening {
     /// The flow Δα > 0 from α with `excess` − `stiffness` Δα = σ_y(α + Δα) − σ_y(α), for a trial
     /// stress that exceeds σ_y(α) by `excess`.
     #[inline(always)]
-    pub(super) fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> Flow {
+    pub fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> Flow {
         match self {
             Self::Linear { modulus, .. } => {
                 let strain = excess / (stiffness + modulus);
@@ -177,70 +177,6 @@ impl Hardening {
                 }
             }
             Self::Table(table) => table.flow(alpha, excess, stiffness),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn laws() -> [Hardening; 3] {
-        let table = Table::new(&[[0.0, 2.0], [0.1, 2.5], [0.3, 2.5], [0.6, 4.0]]);
-        [
-            Hardening::Linear { yield_stress: 2.0, modulus: 3.0 },
-            Hardening::Voce { yield_stress: 2.0, modulus: 0.5, rise: 1.5, rate: 12.0 },
-            Hardening::Table(table.unwrap()),
-        ]
-    }
-
-    /// The flow fulfils its equation, and its integral is the difference of what is stored.
-    #[test]
-    fn flow_ends_on_the_yield_stress() {
-        for law in laws() {
-            for alpha in [0.0, 0.05, 0.1, 0.29, 1.0] {
-                for excess in [1e-12, 1e-3, 0.4, 3.0, 40.0] {
-                    let start = law.at(alpha);
-                    let flow = law.flow(alpha, excess, 7.0);
-                    let end = law.at(alpha + flow.strain);
-                    let remainder = excess - 7.0 * flow.strain - (end.stress - start.stress);
-                    assert!(
-                        remainder.abs() < 2e-15 * (4.0 + excess),
-                        "{law:?} {alpha} {excess} {remainder:e}"
-                    );
-                    let over = start.stress - law.initial();
-                    let stored = flow.hardening + over * flow.strain;
-                    assert!((end.stored - start.stored - stored).abs() < 1e-14 * (1.0 + end.stored));
-                }
-            }
-        }
-    }
-
-    /// Yield stress and slope are derivatives, within the segments of a table.
-    #[test]
-    fn stress_and_slope_are_derivatives() {
-        for law in laws() {
-            for alpha in [0.05, 0.2, 0.45, 0.9] {
-                let slope = |f: &dyn Fn(f64) -> f64| (f(alpha + 1e-5) - f(alpha - 1e-5)) / 2e-5;
-                let over = law.at(alpha).stress - law.initial();
-                assert!((slope(&|x| law.at(x).stored) - over).abs() < 1e-8);
-                let flow = law.flow(alpha, 1e-10, 7.0);
-                assert!((slope(&|x| law.at(x).stress) - flow.slope).abs() < 1e-6, "{law:?} {alpha}");
-            }
-        }
-    }
-
-    #[test]
-    fn tables_that_fall_are_none() {
-        for points in [
-            &[][..],
-            &[[0.1, 1.0]],
-            &[[0.0, 0.0]],
-            &[[0.0, 1.0], [0.0, 2.0]],
-            &[[0.0, 2.0], [0.1, 1.0]],
-            &[[0.0, 1.0], [0.1, f64::NAN]],
-        ] {
-            assert_eq!(Table::new(points), None, "{points:?}");
         }
     }
 }

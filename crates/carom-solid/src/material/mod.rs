@@ -14,7 +14,8 @@ mod hencky;
 mod hyperelastic;
 mod isochoric;
 mod j2;
-mod kinematics;
+#[doc(hidden)]
+pub mod kinematics;
 mod law;
 mod linear_elastic;
 mod memory;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use carom_algebra::{Mat, jacobian_error};
+use carom_solid::discrete_gradient::root;
 use carom_solid::material::{Material, NeoHookean, PlaneStress, SaintVenantKirchhoff};
 use carom_solid::{Body, Element, Law, Mesh, body, plane_stress_body};
 
@@ -203,4 +204,13 @@ fn a_rotation_does_not_add_its_round_off_to_the_energy() {
             }
         }
     }
+}
+
+#[test]
+fn the_root_is_a_root_in_three_dimensions() {
+    let e = Mat([[0.2, -0.1, 0.05], [-0.1, -0.1, 0.15], [0.05, 0.15, 0.3]]);
+    let f = Mat::identity() + root(&e).unwrap();
+    let error = f.transposed() * f - Mat::identity() - e * 2.0;
+    assert!(error.double_dot(&error) < 1e-30);
+    assert!(root(&(Mat::<3>::identity() * -0.6)).is_err());
 }

@@ -4,6 +4,7 @@
 
 mod common;
 mod corpus;
+mod coverage;
 mod distributed;
 mod expectations;
 mod study;

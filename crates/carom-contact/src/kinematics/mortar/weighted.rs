@@ -213,8 +213,8 @@ impl Mortar {
         })
     }
 
-    /// Adds the terms of the joints of the primary to the derivative of a row of a pair; `jump`: that
-    /// of the row at a joint.
+    /// Adds the terms of the joints of the primary to the derivative of a row of a pair; `jump`:
+    /// that of the row at a joint.
     pub(super) fn add_joints(
         &self,
         pair: &Pair,

@@ -50,11 +50,11 @@ pub(crate) struct EdgeOfFacet {
 }
 
 /// A point relative to the nearest point of a facet.
-pub(super) struct Height {
+pub struct Height {
     /// Distance of the point from the nearest point of the facet.
-    pub(super) distance: f64,
+    pub distance: f64,
     /// Component of the offset along the normal of the boundary; zero at the tip of a slit.
-    pub(super) height: f64,
+    pub height: f64,
 }
 
 /// A point as seen from the nearest point of a facet.
@@ -129,7 +129,7 @@ impl Boundary {
     }
 
     /// Whether the facets form a closed surface: the whole boundary of the body is known.
-    pub(crate) fn is_whole(&self) -> bool {
+    pub fn is_whole(&self) -> bool {
         self.is_whole
     }
 
@@ -142,7 +142,7 @@ impl Boundary {
     }
 
     /// A facet of the boundary.
-    pub(crate) fn patch(&self, facet: usize) -> Patch<'_> {
+    pub fn patch(&self, facet: usize) -> Patch<'_> {
         Patch { shape: self.shape, nodes: self.nodes_of(facet) }
     }
 
@@ -340,7 +340,7 @@ impl Boundary {
     }
 
     /// Height of a point over the boundary at the nearest point of a facet.
-    pub(super) fn height(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Height {
+    pub fn height(&self, facet: usize, point: Vector<3>, y: &[f64]) -> Height {
         let nearest = self.patch(facet).nearest(y, point);
         let Offset { vector, normal } = self.offset(facet, nearest, point, y);
         let size = normal.norm();

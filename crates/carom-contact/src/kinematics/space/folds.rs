@@ -43,7 +43,7 @@ const ALONG: Vector<3> = Vector([1.0, 0.618, 0.382]);
 
 /// The order of the places of a boundary, and the faces of its walls, in global node numbers.
 #[derive(Debug)]
-pub(super) struct PatchFolds {
+pub struct PatchFolds {
     /// Smallest global number of a node of the boundary.
     first: usize,
     /// Facets that contain each node, ascending, for all nodes from the smallest on.
@@ -60,7 +60,7 @@ pub(super) struct PatchFolds {
 impl PatchFolds {
     /// Orders the places of a boundary at reference positions, flat over all nodes; `piece`: the
     /// connected piece of the body to which each node belongs, from `first_node` on.
-    pub(super) fn new(boundary: &Boundary, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
+    pub fn new(boundary: &Boundary, piece: &[usize], first_node: usize, reference: &[f64]) -> Self {
         let nodes = boundary.nodes();
         let first = nodes.iter().min().copied().unwrap_or(0);
         let count = nodes.iter().max().map_or(0, |last| last + 1 - first);
@@ -129,7 +129,7 @@ impl PatchFolds {
 
     /// Whether a node and a facet may form a pair in which the node is on the given side, as far as
     /// the reference configuration tells.
-    pub(super) fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
+    pub fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
         let own = self.own(node);
         own.binary_search(&facet).is_err()
             && own.iter().any(|&own| self.side(node, own, facet) == side && !self.is_behind(own, facet))
@@ -138,7 +138,7 @@ impl PatchFolds {
     /// Side in the order of places on which a node is that may meet a facet, at positions with the
     /// given normals of the facets' middles; none if the two places cannot meet, or do not face
     /// each other.
-    pub(super) fn met(&self, node: usize, facet: usize, normal: impl Fn(usize) -> Vector<3>) -> Option<Side> {
+    pub fn met(&self, node: usize, facet: usize, normal: impl Fn(usize) -> Vector<3>) -> Option<Side> {
         let own = self.own(node);
         let &one = own.first()?;
         if own.binary_search(&facet).is_ok() {
@@ -185,7 +185,7 @@ impl PatchFolds {
 }
 
 /// Updates the outward normals at the middles of all facets.
-pub(super) fn update_normals(boundary: &Boundary, y: &[f64], normals: &mut Vec<Vector<3>>) {
+pub fn update_normals(boundary: &Boundary, y: &[f64], normals: &mut Vec<Vector<3>>) {
     normals.clear();
     normals.extend((0..boundary.all()).map(|facet| boundary.middle(facet, y).normal));
 }
@@ -212,6 +212,3 @@ fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
     }
     part
 }
-
-#[cfg(test)]
-mod tests;

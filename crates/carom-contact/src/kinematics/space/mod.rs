@@ -12,12 +12,14 @@ mod edge_crossing;
 mod edge_gap;
 mod edge_to_edge;
 mod edges;
-mod folds;
+#[doc(hidden)]
+pub mod folds;
 mod gap;
 mod itself;
 mod node_to_patch;
 mod passed;
-mod patch;
+#[doc(hidden)]
+pub mod patch;
 mod patch_rows;
 mod paths;
 

@@ -10,43 +10,44 @@ use carom_solid::{FacetShape, Net};
 use crate::kinematics::projection::bisected;
 
 /// Position of a node in space, from positions flat over all nodes.
-pub(crate) fn place(y: &[f64], node: usize) -> Vector<3> {
+pub fn place(y: &[f64], node: usize) -> Vector<3> {
     Vector([y[3 * node], y[3 * node + 1], y[3 * node + 2]])
 }
 
-pub(crate) fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
+/// a × b.
+pub fn cross(a: Vector<3>, b: Vector<3>) -> Vector<3> {
     Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 }
 
 /// A curved facet in space: its shape and its nodes, counter-clockwise seen from outside.
 #[derive(Clone, Copy)]
-pub(crate) struct Patch<'a> {
-    pub(crate) shape: FacetShape,
-    pub(crate) nodes: &'a [usize],
+pub struct Patch<'a> {
+    pub shape: FacetShape,
+    pub nodes: &'a [usize],
 }
 
 /// Position of a facet in space at ξ, with its derivatives and its normal.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PatchPoint {
-    pub(crate) position: Vector<3>,
-    pub(crate) tangents: [Vector<3>; 2],
+pub struct PatchPoint {
+    pub position: Vector<3>,
+    pub tangents: [Vector<3>; 2],
     /// Second derivatives of the position by ξξ, ξη and ηη.
-    pub(crate) second: [Vector<3>; 3],
+    pub second: [Vector<3>; 3],
     /// Outward unit normal of the facet.
-    pub(crate) normal: Vector<3>,
+    pub normal: Vector<3>,
 }
 
 /// The point of a facet, with its edges and corners, nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Nearest {
-    pub(crate) xi: [f64; 2],
-    pub(crate) at: Feature,
-    pub(crate) distance: f64,
+pub struct Nearest {
+    pub xi: [f64; 2],
+    pub at: Feature,
+    pub distance: f64,
 }
 
 /// Part of a facet on which a point lies: its inside, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Feature {
+pub enum Feature {
     Inside,
     /// The edge from the corner with this number to the next one.
     Edge(usize),
@@ -118,13 +119,13 @@ impl Patch<'_> {
     }
 
     /// Largest distance of ξ past an edge, relative to the height of the facet; negative inside.
-    pub(crate) fn furthest(&self, xi: [f64; 2]) -> f64 {
+    pub fn furthest(&self, xi: [f64; 2]) -> f64 {
         let [first, others @ ..] = self.beyond(xi);
         others.into_iter().fold(first, |most, beyond| if beyond > most { beyond } else { most })
     }
 
     /// Position of the facet at ξ, with its derivatives.
-    pub(crate) fn at(&self, y: &[f64], xi: [f64; 2]) -> PatchPoint {
+    pub fn at(&self, y: &[f64], xi: [f64; 2]) -> PatchPoint {
         self.seen_from(Vector::ZERO, y, xi)
     }
 
@@ -222,7 +223,7 @@ impl Patch<'_> {
     }
 
     /// The nearest point of the facet with its edges and corners.
-    pub(crate) fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
+    pub fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
         let distance = |xi: [f64; 2]| self.offset(from, y, xi).norm();
         // On the way to a point beside an edge, Newton's method may pass it.
         let inside = self.closest_point(y, from, PASSES).filter(|&xi| self.furthest(xi) <= 0.0);
@@ -301,67 +302,5 @@ impl Patch<'_> {
             let (first, second, _) = slope(s);
             (first, second)
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Nodes of a T6 that are displaced from its plane.
-    fn curved() -> Vec<f64> {
-        [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.1],
-            [0.0, 1.0, -0.1],
-            [0.5, 0.0, 0.2],
-            [0.5, 0.5, 0.15],
-            [0.0, 0.5, 0.05],
-        ]
-        .concat()
-    }
-
-    /// A facet of the end of a cylinder: plane, with an edge along the circle.
-    #[test]
-    fn points_beside_a_curved_edge_are_on_the_facet() {
-        let circle = |angle: f64| [angle.to_radians().cos(), angle.to_radians().sin(), 0.0];
-        let middle = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
-        let a = circle(0.0);
-        let b = circle(45.0);
-        let centre = [0.6, 0.25, 0.0];
-        let y = [a, b, centre, circle(22.5), middle(b, centre), middle(centre, a)].concat();
-        let patch = Patch { shape: FacetShape::T6, nodes: &[0, 1, 2, 3, 4, 5] };
-        for k in 1..40 {
-            for depth in [1e-3, 1e-5, 1e-7] {
-                let mut from = patch.at(&y, [f64::from(k) / 40.0 * (1.0 - depth), depth]).position;
-                from[2] += 1e-6;
-                let found = patch.nearest(&y, from);
-                assert!(found.distance < 1.001e-6, "{k} {depth}: {found:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_nearest_point_is_that_of_a_dense_scan() {
-        let y = curved();
-        let patch = Patch { shape: FacetShape::T6, nodes: &[0, 1, 2, 3, 4, 5] };
-        for k in 0..60 {
-            let t = f64::from(k);
-            let from = Vector([
-                1.6 * (t * 0.61).sin().abs() - 0.3,
-                1.4 * (t * 0.37).cos().abs() - 0.2,
-                (t * 0.23).sin(),
-            ]);
-            let mut least = f64::INFINITY;
-            for i in 0..=300 {
-                for j in 0..=300 - i {
-                    let xi = [f64::from(i) / 300.0, f64::from(j) / 300.0];
-                    least = least.min((from - patch.at(&y, xi).position).norm());
-                }
-            }
-            let found = patch.nearest(&y, from);
-            assert!(found.distance <= least + 1e-14 && found.distance > least - 1e-4, "{found:?} {least}");
-            assert!(patch.furthest(found.xi) <= 1e-14);
-        }
     }
 }

@@ -19,14 +19,8 @@
 //! exhausts its budget may be coarser.
 
 mod edge_path;
-#[cfg(test)]
-mod edge_tests;
 mod patch_path;
-#[cfg(test)]
-mod patch_tests;
 mod path;
-#[cfg(test)]
-mod tests;
 
 use carom_algebra::Vector;
 use carom_solid::{Earliest, FacetShape, Net, Piece};

@@ -1,0 +1,87 @@
+//! Unilateral contact with Coulomb's law against brute force.
+
+use carom_algebra::{Cone, Couplings, Kind};
+use faer::linalg::solvers::Solve;
+
+/// Two rows that are the same: proximal steps converge to the stricter of their conditions.
+#[test]
+fn of_dependent_rows_each_inequality_counts() {
+    let kinds = [Kind::Normal; 2];
+    let mut z = Vec::new();
+    for _ in 0..2 {
+        let matrix = &mut Couplings::dense(2, vec![1.0; 4]);
+        let right = &mut [-1.0, -2.0];
+        Cone { matrix, right, kinds: &kinds, is_dependent: true }.solve(&mut z).unwrap();
+    }
+    assert!((z[0] + z[1] - 2.0).abs() < 1e-15);
+}
+
+/// All combinations of open, sticking and slipping contacts, tried one by one, against the
+/// solution: of two contacts in the plane, for many motions and coefficients.
+#[test]
+fn the_solution_is_the_one_that_brute_force_finds() {
+    let wave = |k: usize| (k as f64 * 12.9898).sin() * 43758.5453 % 1.0;
+    for case in 0..400 {
+        let basis: Vec<f64> = (0..16).map(|k| wave(k + 100 * case)).collect();
+        let mut matrix = vec![0.0; 16];
+        for i in 0..4 {
+            for j in 0..4 {
+                let dot = (0..4).map(|k| basis[4 * i + k] * basis[4 * j + k]).sum::<f64>();
+                matrix[4 * i + j] = dot + f64::from(u8::from(i == j)) * 0.5;
+            }
+        }
+        let right: Vec<f64> = (0..4).map(|k| wave(k + 7 + 100 * case)).collect();
+        let mu = [0.0, 0.1, 0.3][case % 3];
+        let tangential = |of| Kind::Tangential { of, coefficient: mu, limit: f64::INFINITY };
+        let kinds = [Kind::Normal, Kind::Normal, tangential(0), tangential(1)];
+        let mut z = Vec::new();
+        let couplings = &mut Couplings::dense(4, matrix.clone());
+        let free = &mut right.clone();
+        let cone = Cone { matrix: couplings, right: free, kinds: &kinds, is_dependent: false };
+        cone.solve(&mut z).unwrap();
+        let found = brute_force(&matrix, &right, mu);
+        let is_one = |other: &[f64; 4]| (0..4).all(|i| (other[i] - z[i]).abs() < 1e-9);
+        assert!(found.iter().any(is_one), "{case}: {z:?} is none of {found:?}");
+    }
+}
+
+/// Every solution of two contacts in the plane: of 4 × 4 ways, open, sticking or slipping
+/// either way, those whose forces and motions obey the law.
+fn brute_force(a: &[f64], b: &[f64], mu: f64) -> Vec<[f64; 4]> {
+    let mut solutions = Vec::new();
+    for ways in 0..16 {
+        let way = [ways % 4, ways / 4];
+        // Columns of P₀, P₁, Q₀, Q₁ in terms of the unknowns, and the rows that vanish.
+        let mut system = faer::Mat::<f64>::identity(4, 4);
+        let mut right = faer::Mat::<f64>::zeros(4, 1);
+        for contact in 0..2 {
+            let normal = contact;
+            let slip = contact + 2;
+            if way[contact] > 0 {
+                (0..4).for_each(|j| system[(normal, j)] = a[4 * normal + j]);
+                right[(normal, 0)] = -b[normal];
+            }
+            match way[contact] {
+                1 => {
+                    (0..4).for_each(|j| system[(slip, j)] = a[4 * slip + j]);
+                    right[(slip, 0)] = -b[slip];
+                }
+                2 => system[(slip, normal)] = -mu,
+                3 => system[(slip, normal)] = mu,
+                _ => {}
+            }
+        }
+        system.partial_piv_lu().solve_in_place(right.as_mut());
+        let z: [f64; 4] = std::array::from_fn(|i| right[(i, 0)]);
+        let u: [f64; 4] = std::array::from_fn(|i| b[i] + (0..4).map(|j| a[4 * i + j] * z[j]).sum::<f64>());
+        let obeys = |contact: usize| {
+            let [p, q, gap, rate] = [z[contact], z[contact + 2], u[contact], u[contact + 2]];
+            let closes = p >= -1e-12 && gap >= -1e-12;
+            closes && q.abs() <= mu * p + 1e-12 && (way[contact] < 2 || q * rate <= 1e-12)
+        };
+        if obeys(0) && obeys(1) {
+            solutions.push(z);
+        }
+    }
+    solutions
+}

@@ -1,0 +1,30 @@
+//! Metrics of the contact pressure at rest, from the rows of contact.csv of the last recorded step
+//! of a static run.
+
+use carom_record::metrics::pressure::hertz;
+
+/// Points of an ellipse with any centre give the ellipse, and so does a half of it.
+#[test]
+fn an_ellipse_is_found() {
+    let p0 = 0.025;
+    let a = 0.05;
+    let c = 3.0;
+    let ellipse = |s: f64| p0 * (1.0 - ((s - c) / a).powi(2)).max(0.0).sqrt();
+    for range in [-7..=8, 0..=9, -9..=0] {
+        let places: Vec<f64> = range.map(|i| c + 0.1 * a * f64::from(i)).collect();
+        let pressures: Vec<f64> = places.iter().map(|s| ellipse(*s)).collect();
+        let (peak, half) = hertz(&places, &pressures).unwrap();
+        assert!((peak / p0 - 1.0).abs() < 1e-9 && (half / a - 1.0).abs() < 1e-9, "{peak} {half}");
+    }
+}
+
+/// By hand: p² = 4, 3, 0 at s = 0, 1, 2 is 4 − s², so p₀ = 2 and a = 2. A single point, or
+/// constant pressure, gives no ellipse.
+#[test]
+fn few_points() {
+    let (peak, half) = hertz(&[0.0, 1.0, 2.0], &[2.0, 3.0_f64.sqrt(), 0.0]).unwrap();
+    assert!((peak - 2.0).abs() < 1e-12 && (half - 2.0).abs() < 1e-12);
+    assert_eq!(hertz(&[0.0], &[1.0]), None);
+    assert_eq!(hertz(&[], &[]), None);
+    assert_eq!(hertz(&[0.0, 1.0], &[1.0, 1.0]), None);
+}

@@ -1,0 +1,132 @@
+//! References by hand.
+
+use carom_record::metrics::Metric;
+use carom_record::study::levels::Level;
+use carom_record::study::reference::{Reference, Standing};
+use carom_record::study::trajectory::Trajectory;
+
+/// Uncertainty after a last difference of two halved levels with the order 1, which counts as 2/3.
+fn after(last: f64) -> f64 {
+    1.25 * last / (2.0_f64.powf(2.0 / 3.0) - 1.0)
+}
+
+fn with(name: &'static str, value: f64) -> Trajectory {
+    let metric = Metric { name: name.into(), value: Some(value), unit: String::new(), definition: "" };
+    Trajectory { metrics: vec![metric], ..Trajectory::default() }
+}
+
+/// By hand: 1.4, 1.2, 1.1 at halved steps converge with first order; members at the
+/// finest level that differ by 0.05 from their median widen the interval by as much.
+#[test]
+fn refinement_and_spread_add_up() {
+    let level = |step: f64, values: &[f64]| Level {
+        step,
+        mesh: 1.0 / step,
+        phases: 1,
+        members: values.iter().map(|v| with("m", *v)).collect(),
+    };
+    let of = |finest: &[f64]| {
+        let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
+        Reference::of_levels(String::new(), levels)
+    };
+    let found = of(&[1.1]).estimate("m").unwrap();
+    assert!((found.order.unwrap() - 1.0).abs() < 1e-9 && (found.uncertainty - after(0.1)).abs() < 1e-9);
+    let spread = of(&[1.1, 1.05, 1.15]).estimate("m").unwrap();
+    assert!((spread.uncertainty - after(0.1) - 0.05).abs() < 1e-9 && (spread.spread - 0.05).abs() < 1e-12);
+    assert!(matches!(of(&[3.0]).metric("m"), Standing::Not(_)));
+    let single = Reference::of_levels(String::new(), vec![level(1.0, &[1.0])]);
+    assert!(matches!(single.metric("m"), Standing::Not(_)));
+}
+
+/// By hand: the medians 1.4, 1.2, 1.1 are those of the first member and would be uncertain by 0.21.
+/// The second does not converge and is uncertain by 3 · 0.2; the third converges with the order
+/// 1.3, its last difference is 0.2, and its uncertainty, 0.43, is the median.
+#[test]
+fn every_member_is_refined_alone() {
+    let level = |step: f64, values: [f64; 3]| Level {
+        step,
+        mesh: 1.0 / step,
+        phases: 1,
+        members: values.iter().map(|v| with("m", *v)).collect(),
+    };
+    let levels = [(4.0, [1.4, 1.3, 1.8]), (2.0, [1.2, 1.2, 1.3]), (1.0, [1.1; 3])];
+    let levels = levels.map(|(step, values)| level(step, values)).into();
+    let found = Reference::of_levels(String::new(), levels).estimate("m").unwrap();
+    assert!((found.uncertainty - after(0.2)).abs() < 1e-9, "{found:?}");
+}
+
+/// By hand: instants 1.4, 1.2, 1.1 at the steps 4, 2, 1 are uncertain by 0.21 as above, and by
+/// the step 2 of the level before. Members 0.2 before and after the median add 0.2; if they are
+/// three phases, 3/2 of that, and a third of the step.
+#[test]
+fn instants_are_late() {
+    let of = |phases: usize, finest: &[f64]| {
+        let level = |step: f64, values: &[f64]| Level {
+            step,
+            mesh: 1.0 / step,
+            phases,
+            members: values.iter().map(|v| with("contact_end", *v)).collect(),
+        };
+        let levels = vec![level(4.0, &[1.4]), level(2.0, &[1.2]), level(1.0, finest)];
+        Reference::of_levels(String::new(), levels).estimate("contact_end").unwrap().uncertainty
+    };
+    assert!((of(1, &[1.1]) - after(0.1) - 2.0).abs() < 1e-9);
+    assert!((of(1, &[1.1, 0.9, 1.3]) - after(0.1) - 2.2).abs() < 1e-9);
+    assert!((of(3, &[1.1, 0.9, 1.3]) - after(0.1) - 0.3 - 2.0 / 3.0).abs() < 1e-9);
+}
+
+/// By hand: averaging changes the peak of the finest run from 1.1 to 0.9; 5/4 of that is 0.25.
+#[test]
+fn what_averaging_changes_is_uncertain() {
+    let levels = [(4.0, 1.4), (2.0, 1.2), (1.0, 1.1)];
+    let levels = levels.map(|(step, value)| Level::single(step, with("peak_force", value)));
+    let mut reference = Reference::of_levels(String::new(), levels.into());
+    reference.averaged = with("peak_force", 0.9).metrics;
+    assert!((reference.estimate("peak_force").unwrap().uncertainty - after(0.1) - 0.25).abs() < 1e-9);
+}
+
+/// Columns off from 10 t by 0.4, 0.2 and 0.1 on [0, 1], except at the ends, which set the
+/// range: the deviations between successive levels are in the ratio of 2, so that the order is
+/// 1 and the uncertainty that of the last deviation. By hand, with a row in the middle only of
+/// three.
+#[test]
+fn uncertainty_and_band_of_a_column() {
+    let run = |off: f64| Trajectory {
+        times: vec![0.0, 0.5, 1.0],
+        columns: [("A.uy".to_owned(), vec![0.0, 5.0 + off, 10.0])].into(),
+        ..Trajectory::default()
+    };
+    let levels = |finest: Vec<Trajectory>| {
+        let finest = Level { step: 1.0, mesh: 1.0, phases: 1, members: finest };
+        let levels = vec![Level::single(4.0, run(0.4)), Level::single(2.0, run(0.2)), finest];
+        Reference::of_levels(String::new(), levels)
+    };
+    let one = levels(vec![run(0.1)]);
+    let rms = |off: f64| off / 10.0 / 3.0_f64.sqrt();
+    let uncertainty = |of: &Reference| of.uncertainty("A.uy").established().unwrap().1;
+    assert!((uncertainty(&one) - after(rms(0.1))).abs() < 1e-9);
+    // In the middle the two finest levels differ by 0.1.
+    let band = one.band("A.uy");
+    assert!(band[0] == 0.0 && (band[1] - after(0.1)).abs() < 1e-9 && band[2] == 0.0, "{band:?}");
+    // A member 0.3 away adds its deviation.
+    let two = levels(vec![run(0.1), run(0.4)]);
+    assert!((uncertainty(&two) - after(rms(0.1)) - rms(0.3)).abs() < 1e-9);
+    assert!(matches!(one.uncertainty("B.uy"), Standing::Not(_)) && one.band("B.uy").is_empty());
+}
+
+/// The bar on a wall: a force of 300 from 0.5 to 7/6. Its impulse is a difference of the
+/// integral.
+#[test]
+fn metrics_of_exact_formulas() {
+    let formulas = [
+        ("active", "if(t >= 0.5, if(t < 7/6, 1, 0), 0)"),
+        ("contact_force_x", "if(t >= 0.5, if(t < 7/6, 300, 0), 0)"),
+        ("contact_impulse_x", "300*min(max(t-0.5,0),2/3)"),
+    ];
+    let formulas = formulas.map(|(name, text)| (name.to_owned(), text.to_owned())).into();
+    let reference = Reference::of_formulas(&formulas, 2.0, 2000).unwrap();
+    let value = |name: &str| reference.metric(name).established().unwrap();
+    assert_eq!(value("peak_force"), (300.0, 0.0));
+    assert!((value("impulse_x").0 - 200.0).abs() < 1e-9);
+    assert!(matches!(reference.metric("apex"), Standing::Not(_)));
+}

@@ -1,0 +1,4 @@
+//! Parts of the laws of materials.
+
+mod hardening;
+mod kinematics;

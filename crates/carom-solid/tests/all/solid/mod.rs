@@ -1,0 +1,3 @@
+//! Parts of a body of one shape.
+
+mod projection;
