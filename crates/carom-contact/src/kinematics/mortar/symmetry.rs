@@ -29,7 +29,7 @@ impl Mortar {
             let at_end = ends.filter(|(polynomial, _)| *polynomial == part.polynomial);
             at_end.filter_map(|(_, forward)| self.end_in_plane(&self.secondary, part.facet, forward))
         });
-        ends.filter_map(|end| self.with_opposite(&end)).next().unwrap_or_default()
+        ends.into_iter().find_map(|end| self.with_opposite(&end)).unwrap_or_default()
     }
 
     /// The end of a facet of a side, if it lies in a plane of symmetry in the reference
