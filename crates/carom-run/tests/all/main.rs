@@ -29,6 +29,7 @@ mod meeting;
 mod memory;
 mod momentum;
 mod mortar;
+mod mortar_friction;
 mod nonsmooth;
 mod obstacles;
 mod overlap;
