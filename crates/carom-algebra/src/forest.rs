@@ -17,7 +17,7 @@ const OWN: f64 = 0.4;
 /// of its child parts.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cut {
-    /// Its child parts.
+    /// The two parts into which this one is cut further, if it is.
     pub parts: Option<Box<[Cut; 2]>>,
     /// Index one past the last column of the part.
     pub end: usize,
@@ -27,7 +27,7 @@ pub struct Cut {
 pub struct Partition {
     /// The node at each place of the new order.
     pub order: Vec<u32>,
-    /// Its parts.
+    /// The tree of independent parts.
     pub tree: Cut,
 }
 

@@ -38,7 +38,7 @@ const MOST_BYTES: u64 = 100_000_000;
 pub struct TableError {
     /// Reason, with the name and line of the file.
     pub why: String,
-    /// What to try.
+    /// Advice to the user.
     pub help: String,
 }
 

@@ -49,7 +49,7 @@ pub enum SchemeError {
         value: f64,
         /// The valid range.
         range: &'static str,
-        /// What to try.
+        /// Advice to the user.
         hint: String,
     },
 }

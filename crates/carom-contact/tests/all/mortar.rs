@@ -35,17 +35,23 @@ fn chain(
     ((0..count).map(facet).collect(), y)
 }
 
+/// Mortar contact of the facets above, the secondary side, with those below.
+fn facing(shape: FacetShape, above: &[Vec<usize>], below: &[Vec<usize>], reference: &[f64]) -> Mortar {
+    let side = |facets: &[Vec<usize>]| Surface::new(shape, facets, &vec![1.0; facets.len()]);
+    let [secondary, primary] = [above, below].map(side);
+    let nodes = |facets: &[Vec<usize>], to: &Surface| {
+        NodeToFacet::new(facets.concat(), to.clone(), Detection::ClosestPoint)
+    };
+    let sides = Combined::both(nodes(above, &primary), nodes(below, &secondary).reversed());
+    Mortar::new(secondary, primary, reference, sides)
+}
+
 /// A secondary side of three facets over a primary one of `count`, which are curved.
 fn scene(shape: FacetShape, count: usize, gap: f64) -> Scene {
     let (above, mut y) = chain(shape, [-0.9, 0.8], 3, 0, |x| gap + 0.08 * (2.0 * x).sin());
     let (below, lower) = chain(shape, [1.5, -1.5], count, y.len() / 2, |x| 0.05 * (1.0 - x * x));
     y.extend(lower);
-    let side = |facets: &[Vec<usize>]| Surface::new(shape, facets, &vec![1.0; facets.len()]);
-    let [secondary, primary] = [&above, &below].map(|facets| side(facets));
-    let nodes =
-        |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-    let sides = Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
-    Scene { contact: Mortar::new(secondary, primary, &y, sides), y }
+    Scene { contact: facing(shape, &above, &below, &y), y }
 }
 
 /// A secondary side of three facets over a circle that is carried by a simplex and may turn.
@@ -65,12 +71,7 @@ fn overhanging(shape: FacetShape) -> Scene {
     let (above, mut y) = chain(shape, [-0.9, 0.8], 2, 0, |x| 0.3 + 0.08 * (2.0 * x).sin());
     let (below, lower) = chain(shape, [0.5, -0.6], 1, y.len() / 2, |x| 0.05 * (1.0 - x * x));
     y.extend(lower);
-    let side = |facets: &[Vec<usize>]| Surface::new(shape, facets, &vec![1.0; facets.len()]);
-    let [secondary, primary] = [&above, &below].map(|facets| side(facets));
-    let nodes =
-        |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-    let sides = Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
-    Scene { contact: Mortar::new(secondary, primary, &y, sides), y }
+    Scene { contact: facing(shape, &above, &below, &y), y }
 }
 
 /// A curved secondary facet that turns from 63° to 72° away from a straight primary one, or from an
@@ -83,13 +84,7 @@ fn steep(shape: FacetShape, opposite: Steep) -> Scene {
         Steep::Facet => {
             let (below, lower) = chain(shape, [1.5, -1.5], 1, nodes, |_| 0.0);
             y.extend(lower);
-            let primary = Surface::new(shape, &below, &[1.0]);
-            let nodes = |nodes: Vec<usize>, to: &Surface| {
-                NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint)
-            };
-            let sides =
-                Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
-            return Scene { contact: Mortar::new(secondary, primary, &y, sides), y };
+            return Scene { contact: facing(shape, &above, &below, &y), y };
         }
         Steep::Plane => Obstacle::plane(&[0.0, 0.0], &[0.0, 1.0]),
         Steep::Circle => Obstacle::circle(&[0.1, -3.0], 3.0, false),
@@ -210,13 +205,7 @@ fn derivatives_over_a_joint_of_the_primary_agree_with_differences() {
         let (above, mut y) = chain(shape, [-0.9, 0.8], 1, 0, |x| 0.03 * x);
         let (below, lower) = chain(shape, [1.0, -1.0], 2, y.len() / 2, |x| turn * x.abs());
         y.extend(lower);
-        let side = |facets: &[Vec<usize>]| Surface::new(shape, facets, &vec![1.0; facets.len()]);
-        let [secondary, primary] = [&above, &below].map(|facets| side(facets));
-        let nodes =
-            |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-        let sides =
-            Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
-        let scene = Scene { contact: Mortar::new(secondary, primary, &y, sides), y };
+        let scene = Scene { contact: facing(shape, &above, &below, &y), y };
         for pair in scene.pairs() {
             let of = |matrix: &mut [f64]| scene.contact.curvature_into(&pair, &scene.y, matrix);
             let hessian = scene.full(&pair, of);
@@ -292,13 +281,7 @@ fn the_gap_is_a_mean() {
         let (below, lower) = chain(shape, [9.0, -7.0], 31, y.len() / 2, |_| 0.0);
         let reference = y.iter().copied().chain(lower.iter().copied()).collect::<Vec<f64>>();
         y.extend(lower);
-        let side = |facets: &[Vec<usize>]| Surface::new(shape, facets, &vec![1.0; facets.len()]);
-        let [secondary, primary] = [&above, &below].map(|facets| side(facets));
-        let nodes =
-            |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-        let sides =
-            Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
-        let contact = Mortar::new(secondary, primary, &reference, sides);
+        let contact = facing(shape, &above, &below, &reference);
         let mut rows = Rows::new(2);
         let mut pair = Pair { reach: 99, ..Pair::open(0, 15, 0.0) };
         contact.measure(&mut pair, &y, &mut rows).unwrap();
@@ -319,13 +302,7 @@ fn what_faces_nothing_does_not_count() {
         y.truncate(2 * 3);
         let (below, lower) = chain(FacetShape::L2, [end, -1.0], 1, 3, |_| 0.0);
         y.extend(lower);
-        let side = |facets: &[Vec<usize>]| Surface::new(FacetShape::L2, facets, &vec![1.0; facets.len()]);
-        let [secondary, primary] = [&above, &below].map(|facets| side(facets));
-        let nodes =
-            |nodes: Vec<usize>, to: &Surface| NodeToFacet::new(nodes, to.clone(), Detection::ClosestPoint);
-        let sides =
-            Combined::both(nodes(above.concat(), &primary), nodes(below.concat(), &secondary).reversed());
-        let contact = Mortar::new(secondary, primary, &y, sides);
+        let contact = facing(FacetShape::L2, &above, &below, &y);
         let gap = |node: usize| {
             let mut rows = Rows::new(2);
             contact.measure(&mut Pair { reach: 9, ..Pair::open(node, 0, 0.0) }, &y, &mut rows).unwrap();

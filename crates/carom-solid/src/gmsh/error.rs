@@ -187,7 +187,7 @@ impl MshError {
         }
     }
 
-    /// What to try.
+    /// Advice to the user on how to mend the mesh.
     pub fn help(&self) -> &'static str {
         match &self.fault {
             Fault::NotMsh | Fault::Version(_) | Fault::Header(_) => {

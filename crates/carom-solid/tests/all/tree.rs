@@ -96,8 +96,8 @@ fn equal_boxes_one_box_and_none() {
 /// Boxes of the edges of a regular polygon rotated by an angle and stretched.
 fn polygon(count: usize, turned: f64, stretched: f64) -> impl Fn(usize) -> Bounds {
     let at = move |k: usize| {
-        let (sin, cos) = (turned + std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
-        [stretched * cos, stretched * sin]
+        let angle = turned + std::f64::consts::TAU * k as f64 / count as f64;
+        [stretched * angle.cos(), stretched * angle.sin()]
     };
     move |k| [at(k), at(k + 1)].iter().collect()
 }

@@ -77,7 +77,7 @@ fn vectors(change: impl Fn(&mut [f64; 36], &mut [f64])) {
         let (mut a, kinds) = in_space(limit);
         let mut b: Vec<f64> = (0..6).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
         if k % 3 == 0 {
-            // That of forces within the cone, disturbed.
+            // The right-hand side of forces within the cone, disturbed.
             let forces: [f64; 6] = [2.0, 1.5, 0.1, -0.3, 0.2, 0.25];
             (0..6).for_each(|i| b[i] = 0.02 * b[i] - (0..6).map(|j| a[i * 6 + j] * forces[j]).sum::<f64>());
         }
@@ -121,7 +121,7 @@ fn vectors_of_which_a_component_moves_nothing_obey_the_law() {
     }
 }
 
-/// What supports move never sticks.
+/// A component of a contact that supports move has no force, and the others obey the law.
 #[test]
 fn vectors_obey_the_law_where_supports_move_a_component() {
     vectors(|a, b| {
