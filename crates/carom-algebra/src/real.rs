@@ -17,9 +17,16 @@ pub trait Real:
     #[must_use]
     fn map(self, function: impl Fn(f64) -> f64) -> Self;
 
+    /// Applies a function of two numbers, lane by lane.
+    #[must_use]
+    fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self;
+
     /// The larger one of two numbers, lane by lane.
     #[must_use]
-    fn max(self, other: Self) -> Self;
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, f64::max)
+    }
 
     /// The number in the first lane that has a property, if there is one.
     fn find(self, has: impl Fn(f64) -> bool) -> Option<f64>;
@@ -39,8 +46,8 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        f64::max(self, other)
+    fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
+        function(self, other)
     }
 
     #[inline(always)]
@@ -77,10 +84,10 @@ impl Real for Four {
     }
 
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
+    fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
         let mut lanes = self;
         for l in 0..4 {
-            lanes.0[l] = self.0[l].max(other.0[l]);
+            lanes.0[l] = function(self.0[l], other.0[l]);
         }
         lanes
     }

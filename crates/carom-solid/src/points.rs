@@ -133,6 +133,22 @@ pub(crate) fn four<const D: usize>(mats: &Mats<D>) -> Mat<D, Four> {
     mat
 }
 
+/// The numbers of up to four points with `size` ≤ `MOST` each, number by number; zero in the other
+/// lanes.
+#[inline(always)]
+pub(crate) fn four_each<const MOST: usize>(numbers: &[f64], size: usize) -> [Four; MOST] {
+    let mut of_points = [[0.0; MOST]; LANES];
+    for (own, given) in of_points.iter_mut().zip(numbers.chunks_exact(size)) {
+        own[..size].copy_from_slice(given);
+    }
+    let [a, b, c, d] = of_points;
+    let mut each = [Four([0.0; LANES]); MOST];
+    for k in 0..size {
+        each[k] = Four([a[k], b[k], c[k], d[k]]);
+    }
+    each
+}
+
 /// The lanes of a matrix.
 #[inline(always)]
 pub(crate) fn lanes<const D: usize>(mat: &Mat<D, Four>) -> Mats<D> {

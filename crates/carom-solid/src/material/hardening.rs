@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use carom_algebra::Real;
+
 /// Yield stress σ_y(α) > 0, which does not fall.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Hardening {
@@ -43,22 +45,22 @@ struct Entry {
 
 /// Yield stress at a plastic strain, and the energy that hardening has stored there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Strength {
+pub struct Strength<T = f64> {
     /// σ_y.
-    pub stress: f64,
+    pub stress: T,
     /// ∫ (σ_y − σ_y(0)) dα from zero: what hardening stores.
-    pub stored: f64,
+    pub stored: T,
 }
 
 /// Plastic flow in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flow {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flow<T = f64> {
     /// Δα.
-    pub strain: f64,
+    pub strain: T,
     /// dσ_y/dα at the end.
-    pub slope: f64,
+    pub slope: T,
     /// ∫ (σ_y − σ_y(α)) dα over the step.
-    pub hardening: f64,
+    pub hardening: T,
 }
 
 impl Table {
@@ -105,7 +107,7 @@ impl Table {
         let mut segment = self.segment(alpha);
         let mut remaining = excess;
         let mut risen = 0.0;
-        let mut flow = Flow::default();
+        let mut flow = Flow { strain: 0.0, slope: 0.0, hardening: 0.0 };
         loop {
             flow.slope = self.slope(segment);
             let whole = remaining / (stiffness + flow.slope);
@@ -134,49 +136,76 @@ impl Hardening {
 
     /// The yield stress at α.
     #[inline(always)]
-    pub fn at(&self, alpha: f64) -> Strength {
+    pub fn at<T: Real>(&self, alpha: T) -> Strength<T> {
         match self {
             Self::Linear { yield_stress, modulus } => {
-                Strength { stress: yield_stress + modulus * alpha, stored: 0.5 * modulus * alpha * alpha }
+                let rise = T::of(*modulus) * alpha;
+                Strength { stress: T::of(*yield_stress) + rise, stored: T::of(0.5) * rise * alpha }
             }
             Self::Voce { yield_stress, modulus, rise, rate } => {
-                let saturated = -(-rate * alpha).exp_m1();
+                let saturated = alpha.map(|alpha| -(-rate * alpha).exp_m1());
+                let linear = T::of(*modulus) * alpha;
+                let rise = T::of(*rise);
                 Strength {
-                    stress: yield_stress + modulus * alpha + rise * saturated,
-                    stored: 0.5 * modulus * alpha * alpha + rise * (alpha - saturated / rate),
+                    stress: T::of(*yield_stress) + linear + rise * saturated,
+                    stored: T::of(0.5) * linear * alpha + rise * (alpha - saturated / T::of(*rate)),
                 }
             }
-            Self::Table(table) => table.at(alpha),
+            Self::Table(table) => Strength {
+                stress: alpha.map(|alpha| table.at(alpha).stress),
+                stored: alpha.map(|alpha| table.at(alpha).stored),
+            },
         }
     }
 
-    /// The flow Δα > 0 from α with `excess` − `stiffness` Δα = σ_y(α + Δα) − σ_y(α), for a trial
-    /// stress that exceeds σ_y(α) by `excess`.
+    /// The flow Δα from α with `excess` − `stiffness` Δα = σ_y(α + Δα) − σ_y(α), for a trial stress
+    /// that exceeds σ_y(α) by `excess`; none where that is zero.
     #[inline(always)]
-    pub fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> Flow {
+    pub fn flow<T: Real>(&self, alpha: T, excess: T, stiffness: f64) -> Flow<T> {
         match self {
             Self::Linear { modulus, .. } => {
-                let strain = excess / (stiffness + modulus);
-                Flow { strain, slope: *modulus, hardening: 0.5 * modulus * strain * strain }
+                let strain = excess / T::of(stiffness + modulus);
+                let modulus = T::of(*modulus);
+                Flow { strain, slope: modulus, hardening: T::of(0.5) * modulus * strain * strain }
             }
             Self::Voce { modulus, rise, rate, .. } => {
-                let left = rise * (-rate * alpha).exp();
-                // The remainder is convex and falls with Δα: Newton's iterates rise to its root.
-                let mut strain = 0.0;
-                loop {
-                    let saturated = -(-rate * strain).exp_m1();
-                    let slope = modulus + left * rate * (1.0 - saturated);
-                    let remainder = excess - (stiffness + modulus) * strain - left * saturated;
-                    let next = strain + remainder / (stiffness + slope);
-                    let rises = next > strain * (1.0 + f64::EPSILON);
-                    if !rises {
-                        let hardening = 0.5 * modulus * strain * strain + left * (strain - saturated / rate);
-                        return Flow { strain, slope, hardening };
-                    }
-                    strain = next;
+                let left = alpha.map(|alpha| rise * (-rate * alpha).exp());
+                let strain = left.zip(excess, |left, excess| {
+                    let by_strain = stiffness + modulus;
+                    saturating_flow(excess, by_strain, left, *rate)
+                });
+                let saturated = strain.map(|strain| -(-rate * strain).exp_m1());
+                let modulus = T::of(*modulus);
+                let rate = T::of(*rate);
+                Flow {
+                    strain,
+                    slope: modulus + left * rate * (T::of(1.0) - saturated),
+                    hardening: T::of(0.5) * modulus * strain * strain + left * (strain - saturated / rate),
                 }
             }
-            Self::Table(table) => table.flow(alpha, excess, stiffness),
+            Self::Table(table) => {
+                let strain = alpha.zip(excess, |alpha, excess| table.flow(alpha, excess, stiffness).strain);
+                let hardening =
+                    alpha.zip(excess, |alpha, excess| table.flow(alpha, excess, stiffness).hardening);
+                let slope = (alpha + strain).map(|alpha| table.slope(table.segment(alpha)));
+                Flow { strain, slope, hardening }
+            }
         }
+    }
+}
+
+/// The root Δα of `excess` = `stiffness` Δα + `left` (1 − exp(−`rate` Δα)). The remainder is convex
+/// and falls with Δα: Newton's iterates rise to its root.
+fn saturating_flow(excess: f64, stiffness: f64, left: f64, rate: f64) -> f64 {
+    let mut strain = 0.0;
+    loop {
+        let saturated = -(-rate * strain).exp_m1();
+        let remainder = excess - stiffness * strain - left * saturated;
+        let next = strain + remainder / (stiffness + left * rate * (1.0 - saturated));
+        let rises = next > strain * (1.0 + f64::EPSILON);
+        if !rises {
+            return strain;
+        }
+        strain = next;
     }
 }

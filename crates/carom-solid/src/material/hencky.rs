@@ -3,11 +3,12 @@
 //!
 //!   Ψ = Λ/2 (tr ε)² + μ ε : ε,   τ = Λ tr ε I + 2μ ε.
 
-use carom_algebra::Mat;
+use carom_algebra::{Four, Mat, Real};
 
-use super::hyperelastic::Material;
+use super::hyperelastic::{InLanes, Material};
 use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
 use super::{NotPositive, Thickness};
+use crate::points::{four, lanes};
 
 /// Hencky's law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +20,9 @@ pub struct Hencky {
 }
 
 /// Ψ and the principal stresses.
-pub struct Point<const D: usize> {
-    energy: f64,
-    of: PrincipalStress<D>,
+pub struct Point<const D: usize, T = f64> {
+    energy: T,
+    of: PrincipalStress<D, T>,
 }
 
 impl Hencky {
@@ -35,25 +36,31 @@ impl Hencky {
         Self { lambda: -2.0 * self.mu / 3.0, mu: self.mu }
     }
 
-    /// The law at strains.
     #[inline(always)]
-    pub(super) fn stress_at<const D: usize>(&self, frame: PrincipalFrame<D>) -> PrincipalStress<D> {
-        let mean = self.bulk() * frame.trace();
-        PrincipalStress {
-            kirchhoff: frame.deviator().map(|strain| mean + 2.0 * self.mu * strain),
-            frame,
-            volumetric: self.lambda,
-            shear: 2.0 * self.mu,
-            softening: 0.0,
-            direction: [0.0; 3],
+    fn kinematics<const D: usize, T: Real>(&self, h: &Mat<D, T>) -> Result<Point<D, T>, NotPositive> {
+        let frame = PrincipalFrame::new(h, None, T::ZERO)?;
+        let deviator = frame.deviator();
+        let mean = T::of(self.bulk()) * frame.trace();
+        let shear = T::of(2.0 * self.mu);
+        let mut kirchhoff = deviator;
+        for a in 0..3 {
+            kirchhoff[a] = mean + shear * deviator[a];
         }
+        let energy = self.energy_of(frame.trace(), &deviator);
+        let volumetric = T::of(self.lambda);
+        let softening = T::ZERO;
+        let direction = [T::ZERO; 3];
+        Ok(Point {
+            energy,
+            of: PrincipalStress { frame, kirchhoff, volumetric, shear, softening, direction },
+        })
     }
 
     /// Energy of the change of volume tr ε, and of the deviator of ε.
     #[inline(always)]
-    pub(super) fn energy_of(&self, trace: f64, deviator: &[f64; 3]) -> f64 {
-        let square: f64 = deviator.iter().map(|strain| strain * strain).sum();
-        0.5 * self.bulk() * trace * trace + self.mu * square
+    pub(super) fn energy_of<T: Real>(&self, trace: T, deviator: &[T; 3]) -> T {
+        let [x, y, z] = *deviator;
+        T::of(0.5 * self.bulk()) * trace * trace + T::of(self.mu) * (x * x + y * y + z * z)
     }
 }
 
@@ -62,13 +69,23 @@ impl<const D: usize> Material<D> for Hencky {
 
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
-        let frame = PrincipalFrame::new(h, None, 0.0)?;
-        Ok(Point { energy: self.energy_of(frame.trace(), &frame.deviator()), of: self.stress_at(frame) })
+        self.kinematics(h)
     }
 
     #[inline(always)]
     fn energy(&self, p: &Point<D>) -> f64 {
         p.energy
+    }
+
+    #[inline(always)]
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+        let point = self.kinematics(h)?;
+        Ok(Some((point.energy, point.of.stress())))
+    }
+
+    #[inline(always)]
+    fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, _: usize) -> Result<InLanes<D>, NotPositive> {
+        Ok(lanes(&self.kinematics(&four(h))?.of.change(&four(dh))))
     }
 
     by_principal_stress!(D);

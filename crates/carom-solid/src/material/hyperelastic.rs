@@ -12,6 +12,16 @@ pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];
 /// Ψ and P at each of four points.
 pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
 
+/// A step at each of four points of a law with memory.
+pub struct FourAfter<const D: usize> {
+    /// Ψ.
+    pub stored: Four,
+    /// [`Material::dissipated`].
+    pub dissipated: Four,
+    /// P.
+    pub stress: Mat<D, Four>,
+}
+
 /// A hyperelastic law. [`Material::at`] computes common terms once. `at`, `energy`, `stress` and
 /// `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points, for
 /// wide registers.
@@ -136,6 +146,36 @@ pub trait Material<const D: usize>: Send + Sync {
         let mut changes = [[[0.0; LANES]; D]; D];
         for l in 0..count {
             let point = self.at(&get(h, l))?;
+            set(&mut changes, l, &self.change(&point, &get(dh, l)));
+        }
+        Ok(changes)
+    }
+
+    /// A step at four points at once, of a law with memory whose formulas are written for any number;
+    /// none of others. Overwrites the memory of the points with that at the end of the step, unless
+    /// it is empty; there may be less than four, then H = 0 in the other lanes.
+    #[inline(always)]
+    fn after_four(
+        &self,
+        _: &Mat<D, Four>,
+        _: &Past,
+        _: &mut [f64],
+    ) -> Result<Option<FourAfter<D>>, NotPositive> {
+        Ok(None)
+    }
+
+    /// [`Material::changes`] from the memory of the points at the start of a step.
+    #[inline(always)]
+    fn changes_after(
+        &self,
+        h: &InLanes<D>,
+        dh: &InLanes<D>,
+        past: &Past,
+        count: usize,
+    ) -> Result<InLanes<D>, NotPositive> {
+        let mut changes = [[[0.0; LANES]; D]; D];
+        for l in 0..count {
+            let point = self.after(&get(h, l), &past.part(l, Self::MEMORY))?;
             set(&mut changes, l, &self.change(&point, &get(dh, l)));
         }
         Ok(changes)

@@ -21,15 +21,16 @@
 //! A point remembers C_p⁻¹ − I, whose increments have no round-off without flow: its upper triangle
 //! within the dimensions of the body, then its component across (one and two dimensions), then α.
 
-use carom_algebra::Mat;
+use carom_algebra::{Four, Mat, Real};
 
 use super::hardening::{Flow, Hardening};
 use super::hencky::Hencky;
-use super::hyperelastic::Material;
+use super::hyperelastic::{FourAfter, InLanes, Material};
 use super::kinematics::exp_m1;
 use super::past::Past;
 use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
 use super::{NotPositive, Thickness};
+use crate::points::{four, four_each, lanes};
 
 /// Von Mises plasticity with isotropic hardening in logarithmic strains.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,16 +42,16 @@ pub struct J2 {
 }
 
 /// A point in a step.
-pub struct Point<const D: usize> {
-    of: PrincipalStress<D>,
-    start: Remembered<D>,
-    flow: Flow,
+pub struct Point<const D: usize, T = f64> {
+    of: PrincipalStress<D, T>,
+    start: Remembered<D, T>,
+    flow: Flow<T>,
     /// Elastic strain that turns into plastic strain, (1 − β) e.
-    flown: [f64; 3],
+    flown: [T; 3],
     /// Energy stored by the elastic strain and by hardening.
-    stored: f64,
+    stored: T,
     /// ψ.
-    released: f64,
+    released: T,
 }
 
 impl Thickness for J2 {
@@ -62,13 +63,16 @@ impl Thickness for J2 {
 
 /// Memory of a point.
 #[derive(Clone, Copy)]
-struct Remembered<const D: usize> {
+struct Remembered<const D: usize, T> {
     /// C_p⁻¹ − I within the dimensions of the body.
-    plastic: Mat<D>,
+    plastic: Mat<D, T>,
     /// Component of C_p⁻¹ − I in the other directions.
-    across: f64,
-    alpha: f64,
+    across: T,
+    alpha: T,
 }
+
+/// Count of the numbers of a point in space, the largest one.
+const MOST: usize = components(3) + 1;
 
 /// Count of components of a symmetric tensor within D dimensions, and one across where there are
 /// other directions.
@@ -76,80 +80,126 @@ const fn components(dimension: usize) -> usize {
     dimension * (dimension + 1) / 2 + if dimension < 3 { 1 } else { 0 }
 }
 
-impl<const D: usize> Remembered<D> {
+impl<const D: usize, T: Real> Remembered<D, T> {
+    /// From the numbers of a memory.
     #[inline(always)]
-    fn read(memory: &[f64]) -> Self {
+    fn read(number: impl Fn(usize) -> T) -> Self {
         let mut plastic = Mat::ZERO;
         let mut next = 0;
         for i in 0..D {
             for j in i..D {
-                plastic.0[i][j] = memory[next];
-                plastic.0[j][i] = memory[next];
+                plastic.0[i][j] = number(next);
+                plastic.0[j][i] = plastic.0[i][j];
                 next += 1;
             }
         }
-        let across = if D < 3 { memory[next] } else { 0.0 };
-        Self { plastic, across, alpha: memory[components(D)] }
+        let across = if D < 3 { number(next) } else { T::ZERO };
+        Self { plastic, across, alpha: number(components(D)) }
     }
 
+    /// Hands every number to a memory.
     #[inline(always)]
-    fn write(&self, memory: &mut [f64]) {
+    fn write(&self, mut number: impl FnMut(usize, T)) {
         let mut next = 0;
         for i in 0..D {
             for j in i..D {
-                memory[next] = self.plastic.0[i][j];
+                number(next, self.plastic.0[i][j]);
                 next += 1;
             }
         }
         if D < 3 {
-            memory[next] = self.across;
+            number(next, self.across);
         }
-        memory[components(D)] = self.alpha;
+        number(components(D), self.alpha);
+    }
+}
+
+impl<const D: usize, T: Real> Point<D, T> {
+    /// Memory at the end of the step.
+    #[inline(always)]
+    fn end(&self) -> Remembered<D, T> {
+        let mut end = self.start;
+        if self.flow.strain.find(|strain| strain > 0.0).is_none() {
+            return end;
+        }
+        let frame = &self.of.frame;
+        // F⁻¹ nₐ in the columns.
+        let pulled = frame.inverse_transposed.transposed() * frame.axes;
+        let mut shrinks = frame.squares;
+        for a in 0..3 {
+            shrinks[a] = shrinks[a] * exp_m1(T::of(-2.0) * self.flown[a]);
+        }
+        for i in 0..D {
+            for j in i..D {
+                for a in 0..D {
+                    let product = shrinks[a] * (pulled.0[i][a] * pulled.0[j][a]);
+                    end.plastic.0[i][j] = end.plastic.0[i][j] + product;
+                }
+            }
+        }
+        end.across = end.across + shrinks[2];
+        end.alpha = end.alpha + self.flow.strain;
+        end
     }
 }
 
 impl J2 {
-    /// The point of a frame from what it remembers, with flow or without.
+    /// The point from what it remembers.
     #[inline(always)]
-    fn respond<const D: usize>(
+    fn kinematics<const D: usize, T: Real>(
         &self,
-        frame: PrincipalFrame<D>,
-        start: Remembered<D>,
+        h: &Mat<D, T>,
+        start: Remembered<D, T>,
+    ) -> Result<Point<D, T>, NotPositive> {
+        let frame = PrincipalFrame::new(h, Some(&start.plastic), start.across)?;
+        Ok(self.respond(frame, start, true))
+    }
+
+    /// The point of a frame from what it remembers, with flow or without. Where nothing flows, the
+    /// formulas of flow give the elastic response.
+    #[inline(always)]
+    fn respond<const D: usize, T: Real>(
+        &self,
+        frame: PrincipalFrame<D, T>,
+        start: Remembered<D, T>,
         may_flow: bool,
-    ) -> Point<D> {
+    ) -> Point<D, T> {
         let mu = self.elastic.mu;
+        let one = T::of(1.0);
         let strains = frame.deviator();
-        let norm = strains.iter().map(|strain| strain * strain).sum::<f64>().sqrt();
-        let mises = 6.0_f64.sqrt() * mu * norm;
+        let [x, y, z] = strains;
+        let norm = (x * x + y * y + z * z).map(f64::sqrt);
+        let mises = T::of(6.0_f64.sqrt() * mu) * norm;
         let strength = self.hardening.at(start.alpha);
-        let excess = mises - strength.stress;
-        if !(may_flow && excess > 0.0) {
-            let stored = self.elastic.energy_of(frame.trace(), &strains) + strength.stored;
-            let of = self.elastic.stress_at(frame);
-            return Point { of, start, flow: Flow::default(), flown: [0.0; 3], stored, released: 0.0 };
-        }
+        let most = if may_flow { f64::INFINITY } else { 0.0 };
+        let excess = (mises - strength.stress).map(|excess| excess.clamp(0.0, most));
         let flow = self.hardening.flow(start.alpha, excess, 3.0 * mu);
-        let share = 3.0 * mu * flow.strain / mises;
-        let shear = 2.0 * mu * (1.0 - share);
-        let mean = self.elastic.bulk() * frame.trace();
-        let elastic = strains.map(|strain| (1.0 - share) * strain);
+        let flows = excess.map(|excess| if excess > 0.0 { 1.0 } else { 0.0 });
+        let share = T::of(3.0 * mu) * flow.strain / mises.max(T::of(f64::MIN_POSITIVE));
+        let shear = T::of(2.0 * mu) * (one - share);
+        let mean = T::of(self.elastic.bulk()) * frame.trace();
+        let unit = one / norm.max(T::of(f64::MIN_POSITIVE));
+        let mut kirchhoff = strains;
+        let mut direction = strains;
+        let mut elastic = strains;
+        let mut flown = strains;
+        for a in 0..3 {
+            kirchhoff[a] = mean + shear * strains[a];
+            direction[a] = strains[a] * unit;
+            elastic[a] = (one - share) * strains[a];
+            flown[a] = share * strains[a];
+        }
+        let volumetric = T::of(self.elastic.bulk()) - shear / T::of(3.0);
+        let hardens = T::of(3.0 * mu) / (T::of(3.0 * mu) + flow.slope);
+        let softening = T::of(2.0 * mu) * (hardens - share) * flows;
         let hardened = self.hardening.at(start.alpha + flow.strain).stored;
-        let stored = self.elastic.energy_of(frame.trace(), &elastic) + hardened;
-        let of = PrincipalStress {
-            frame,
-            kirchhoff: strains.map(|strain| mean + shear * strain),
-            volumetric: self.elastic.bulk() - shear / 3.0,
-            shear,
-            softening: 2.0 * mu * (3.0 * mu / (3.0 * mu + flow.slope) - share),
-            direction: strains.map(|strain| strain / norm),
-        };
         Point {
-            of,
+            of: PrincipalStress { frame, kirchhoff, volumetric, shear, softening, direction },
             start,
             flow,
-            flown: strains.map(|strain| share * strain),
-            stored,
-            released: flow.strain * (excess - 1.5 * mu * flow.strain) - flow.hardening,
+            flown,
+            stored: self.elastic.energy_of(frame.trace(), &elastic) + hardened,
+            released: flow.strain * (excess - T::of(1.5 * mu) * flow.strain) - flow.hardening,
         }
     }
 }
@@ -160,38 +210,55 @@ impl<const D: usize> Material<D> for J2 {
     type Point = Point<D>;
 
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
-        self.after(h, &Past { memory: &[0.0; 7][..=components(D)], dt: 0.0 })
+        self.after(h, &Past { memory: &[0.0; MOST][..=components(D)], dt: 0.0 })
     }
 
     #[inline(always)]
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point<D>, NotPositive> {
-        let start = Remembered::read(past.memory);
-        let frame = PrincipalFrame::new(h, Some(&start.plastic), start.across)?;
-        Ok(self.respond(frame, start, true))
+        self.kinematics(h, Remembered::read(|k| past.memory[k]))
     }
 
     #[inline(always)]
     fn remember(&self, p: &Point<D>, memory: &mut [f64]) {
-        let mut end = p.start;
-        if p.flow.strain > 0.0 {
-            let frame = &p.of.frame;
-            // F⁻¹ nₐ in the columns.
-            let pulled = frame.inverse_transposed.transposed() * frame.axes;
-            let mut shrinks = frame.squares;
-            for (square, flown) in shrinks.iter_mut().zip(p.flown) {
-                *square *= exp_m1(-2.0 * flown);
-            }
-            for i in 0..D {
-                for j in i..D {
-                    for a in 0..D {
-                        end.plastic.0[i][j] += shrinks[a] * (pulled.0[i][a] * pulled.0[j][a]);
-                    }
+        p.end().write(|k, number| memory[k] = number);
+    }
+
+    #[inline(always)]
+    fn after_four(
+        &self,
+        h: &Mat<D, Four>,
+        past: &Past,
+        memory: &mut [f64],
+    ) -> Result<Option<FourAfter<D>>, NotPositive> {
+        let size = components(D) + 1;
+        let start = four_each::<MOST>(past.memory, size);
+        let point = self.kinematics(h, Remembered::read(|k| start[k]))?;
+        if !memory.is_empty() {
+            point.end().write(|k, numbers| {
+                for (of_point, number) in memory.chunks_exact_mut(size).zip(numbers.0) {
+                    of_point[k] = number;
                 }
-            }
-            end.across += shrinks[2];
-            end.alpha += p.flow.strain;
+            });
         }
-        end.write(memory);
+        Ok(Some(FourAfter {
+            stored: point.stored,
+            dissipated: Four::of(self.hardening.initial()) * point.flow.strain,
+            stress: point.of.stress(),
+        }))
+    }
+
+    #[inline(always)]
+    fn changes_after(
+        &self,
+        h: &InLanes<D>,
+        dh: &InLanes<D>,
+        past: &Past,
+        _: usize,
+    ) -> Result<InLanes<D>, NotPositive> {
+        let size = components(D) + 1;
+        let start = four_each::<MOST>(past.memory, size);
+        let point = self.kinematics(&four(h), Remembered::read(|k| start[k]))?;
+        Ok(lanes(&point.of.change(&four(dh))))
     }
 
     #[inline(always)]

@@ -70,13 +70,18 @@ fn series_of_ln_1p<T: Real>(x: T) -> [T; 2] {
 
 /// exp(x) − 1. The terms omitted are below |x|¹¹/11!: round-off.
 #[inline(always)]
-pub fn exp_m1(x: f64) -> f64 {
-    if x.abs() > 0.05 {
-        return x.exp_m1();
+pub fn exp_m1<T: Real>(x: T) -> T {
+    if x.find(|x| x.abs() > 0.05).is_some() {
+        return x.map(|x| if x.abs() > 0.05 { x.exp_m1() } else { series_of_exp_m1(x) });
     }
-    let mut series = 1.0;
+    series_of_exp_m1(x)
+}
+
+#[inline(always)]
+fn series_of_exp_m1<T: Real>(x: T) -> T {
+    let mut series = T::of(1.0);
     for k in 0..WHOLE.len() {
-        series = 1.0 + x * series * WHOLE[k];
+        series = T::of(1.0) + x * series * T::of(WHOLE[k]);
     }
     x * series
 }

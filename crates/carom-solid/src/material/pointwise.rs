@@ -11,7 +11,7 @@ use super::past::Past;
 use super::{Material, NotPositive};
 use crate::body::PointState;
 use crate::discrete_gradient::{between, change_between};
-use crate::points::{LANES, Lanes, Mats, get, set};
+use crate::points::{LANES, Lanes, Mats, four, get, lanes, set};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
@@ -190,6 +190,9 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         wide(
             #[inline(always)]
             || {
+                if evolve_at_once(self, step, out)? {
+                    return Ok(());
+                }
                 for l in 0..step.count {
                     let law = Incremental { law: self, past: step.past.part(l, L::MEMORY) };
                     evolve_point(&law, step, l, out)?;
@@ -237,6 +240,30 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         }
         Ok(sum)
     }
+}
+
+/// Forces or their increment at all points of a block at once; not of a discrete gradient, nor with
+/// a tangent, nor of laws that are written for one point. Returns whether it was done.
+#[inline(always)]
+fn evolve_at_once<const D: usize, L: Material<D>>(
+    law: &L,
+    step: &Evolution<D>,
+    out: &mut Evolved<D>,
+) -> Result<bool, NotPositive> {
+    if step.before.is_some() || out.moduli.is_some() {
+        return Ok(false);
+    }
+    if let Some(change) = &step.change {
+        out.stress = law.changes_after(&step.h, change, &step.past, step.count)?;
+        return Ok(true);
+    }
+    let Some(four) = law.after_four(&four(&step.h), &step.past, out.memory)? else {
+        return Ok(false);
+    };
+    out.stored = four.stored.0;
+    out.dissipated = four.dissipated.0;
+    out.stress = lanes(&four.stress);
+    Ok(true)
 }
 
 /// A step of one point of a law with memory. Of a discrete gradient everything is a function of the

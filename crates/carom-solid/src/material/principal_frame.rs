@@ -19,35 +19,36 @@
 //! The eigenvalues are those of b − I = H + Hᵀ + H Hᵀ + F (A − I) Fᵀ, so that small strains keep
 //! their accuracy.
 
-use carom_algebra::{Mat, Vector, principal_axes};
+use carom_algebra::{Mat, Real, Vector, principal_axes};
 
 use super::NotPositive;
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
 
 /// F, its inverse, and the principal axes of b.
 #[derive(Clone, Copy)]
-pub(super) struct PrincipalFrame<const D: usize> {
+pub(super) struct PrincipalFrame<const D: usize, T = f64> {
     /// F⁻ᵀ.
-    pub(super) inverse_transposed: Mat<D>,
+    pub(super) inverse_transposed: Mat<D, T>,
     /// J.
-    pub(super) det_f: f64,
+    pub(super) det_f: T,
     /// nₐ, one in each column.
-    pub(super) axes: Mat<D>,
+    pub(super) axes: Mat<D, T>,
     /// λₐ²; those of the other directions last.
-    pub(super) squares: [f64; 3],
+    pub(super) squares: [T; 3],
     /// (εₐ − εᵦ)/(λₐ² − λᵦ²) within the dimensions of the body.
-    slopes: [[f64; D]; D],
+    slopes: [[T; D]; D],
     /// εₐ.
-    pub(super) strains: [f64; 3],
+    pub(super) strains: [T; 3],
 }
 
-impl<const D: usize> PrincipalFrame<D> {
+impl<const D: usize, T: Real> PrincipalFrame<D, T> {
     /// The frame of H and A − I, of which `across` is the component in the directions in which the
     /// body does not extend.
     #[inline(always)]
-    pub(super) fn new(h: &Mat<D>, offset: Option<&Mat<D>>, across: f64) -> Result<Self, NotPositive> {
-        let det_f = 1.0 + valid_excess(h)?;
-        let inverse_transposed = (Mat::identity() + excess_cofactor(h)) * (1.0 / det_f);
+    pub(super) fn new(h: &Mat<D, T>, offset: Option<&Mat<D, T>>, across: T) -> Result<Self, NotPositive> {
+        let one = T::of(1.0);
+        let det_f = one + valid_excess(h)?;
+        let inverse_transposed = (Mat::identity() + excess_cofactor(h)) * (one / det_f);
         let mut excess = *h + h.transposed() + *h * h.transposed();
         if let Some(offset) = offset {
             let f = Mat::identity() + *h;
@@ -56,21 +57,23 @@ impl<const D: usize> PrincipalFrame<D> {
         let found = principal_axes(&excess);
         let mut excesses = [across; 3];
         excesses[..D].copy_from_slice(&found.values);
-        if let Some(least) = excesses.into_iter().find(|x| !(*x > -1.0 && x.is_finite())) {
-            return Err(NotPositive(1.0 + least));
-        }
-        let mut squares = [1.0; 3];
-        let mut strains = [0.0; 3];
+        let mut squares = [one; 3];
+        let mut strains = [T::ZERO; 3];
         for a in 0..3 {
-            squares[a] += excesses[a];
-            strains[a] = 0.5 * ln_1p(excesses[a])[0];
+            if let Some(least) = excesses[a].find(|x| !(x > -1.0 && x.is_finite())) {
+                return Err(NotPositive(1.0 + least));
+            }
+            squares[a] = one + excesses[a];
+            strains[a] = T::of(0.5) * ln_1p(excesses[a])[0];
         }
-        let mut slopes = [[0.0; D]; D];
+        let mut slopes = [[T::ZERO; D]; D];
         for a in 0..D {
             for b in 0..a {
                 let x = (excesses[a] - excesses[b]) / squares[b];
-                let quotient = if x == 0.0 { 1.0 } else { ln_1p(x)[0] / x };
-                slopes[a][b] = 0.5 * quotient / squares[b];
+                // Both are zero where x is: their quotient is one.
+                let equal = x.map(|x| if x == 0.0 { 1.0 } else { 0.0 });
+                let quotient = (ln_1p(x)[0] + equal) / (x + equal);
+                slopes[a][b] = T::of(0.5) * quotient / squares[b];
                 slopes[b][a] = slopes[a][b];
             }
         }
@@ -79,24 +82,28 @@ impl<const D: usize> PrincipalFrame<D> {
 
     /// tr ε.
     #[inline(always)]
-    pub(super) fn trace(&self) -> f64 {
+    pub(super) fn trace(&self) -> T {
         self.strains[0] + self.strains[1] + self.strains[2]
     }
 
     /// The deviator of ε.
     #[inline(always)]
-    pub(super) fn deviator(&self) -> [f64; 3] {
-        let mean = self.trace() / 3.0;
-        self.strains.map(|strain| strain - mean)
+    pub(super) fn deviator(&self) -> [T; 3] {
+        let mean = self.trace() / T::of(3.0);
+        let mut strains = self.strains;
+        for a in 0..3 {
+            strains[a] = strains[a] - mean;
+        }
+        strains
     }
 
     /// Σ xₐ nₐ ⊗ nₐ within the dimensions of the body.
     #[inline(always)]
-    pub(super) fn tensor(&self, of_axes: &[f64; 3]) -> Mat<D> {
+    pub(super) fn tensor(&self, of_axes: &[T; 3]) -> Mat<D, T> {
         let mut scaled = self.axes;
         for row in &mut scaled.0 {
             for a in 0..D {
-                row[a] *= of_axes[a];
+                row[a] = row[a] * of_axes[a];
             }
         }
         scaled * self.axes.transposed()
@@ -104,33 +111,55 @@ impl<const D: usize> PrincipalFrame<D> {
 }
 
 /// Stress and stiffness in a principal frame.
-pub(super) struct PrincipalStress<const D: usize> {
-    pub(super) frame: PrincipalFrame<D>,
+pub(super) struct PrincipalStress<const D: usize, T = f64> {
+    pub(super) frame: PrincipalFrame<D, T>,
     /// τₐ.
-    pub(super) kirchhoff: [f64; 3],
+    pub(super) kirchhoff: [T; 3],
     /// Dₐᵦ = volumetric + shear δₐᵦ − softening Nₐ Nᵦ.
-    pub(super) volumetric: f64,
+    pub(super) volumetric: T,
     /// The factor of the differences of strains in those of stresses.
-    pub(super) shear: f64,
-    pub(super) softening: f64,
+    pub(super) shear: T,
+    pub(super) softening: T,
     /// N, a deviator of norm one.
-    pub(super) direction: [f64; 3],
+    pub(super) direction: [T; 3],
 }
 
-impl<const D: usize> PrincipalStress<D> {
+impl<const D: usize, T: Real> PrincipalStress<D, T> {
     /// Dₐᵦ.
     #[inline(always)]
-    fn stiffness(&self, a: usize, b: usize) -> f64 {
-        let diagonal = if a == b { self.shear } else { 0.0 };
+    fn stiffness(&self, a: usize, b: usize) -> T {
+        let diagonal = if a == b { self.shear } else { T::ZERO };
         self.volumetric + diagonal - self.softening * self.direction[a] * self.direction[b]
     }
 
     /// P.
     #[inline(always)]
-    pub(super) fn stress(&self) -> Mat<D> {
+    pub(super) fn stress(&self) -> Mat<D, T> {
         self.frame.tensor(&self.kirchhoff) * self.frame.inverse_transposed
     }
 
+    /// dP of dF.
+    #[inline(always)]
+    pub(super) fn change(&self, df: &Mat<D, T>) -> Mat<D, T> {
+        let PrincipalFrame { axes, squares, slopes, inverse_transposed, .. } = &self.frame;
+        let l = axes.transposed() * *df * inverse_transposed.transposed() * *axes;
+        let mut change = Mat::ZERO;
+        for i in 0..D {
+            for k in 0..D {
+                change.0[i][i] = change.0[i][i] + self.stiffness(i, k) * l.0[k][k];
+                if k != i {
+                    let turning = self.shear * slopes[i][k];
+                    let turned = turning * (squares[k] * l.0[i][k] + squares[i] * l.0[k][i]);
+                    change.0[i][k] = change.0[i][k] + turned;
+                }
+                change.0[i][k] = change.0[i][k] - self.kirchhoff[i] * l.0[k][i];
+            }
+        }
+        *axes * change * axes.transposed() * *inverse_transposed
+    }
+}
+
+impl<const D: usize> PrincipalStress<D> {
     /// The block K(a, b) of [`Material::tangent`](super::Material::tangent): dP a for dF = e ⊗ b
     /// with each unit vector e.
     #[inline(always)]
@@ -150,25 +179,6 @@ impl<const D: usize> PrincipalStress<D> {
             }
         }
         *axes * block * axes.transposed()
-    }
-
-    /// dP of dF.
-    #[inline(always)]
-    pub(super) fn change(&self, df: &Mat<D>) -> Mat<D> {
-        let PrincipalFrame { axes, squares, slopes, inverse_transposed, .. } = &self.frame;
-        let l = axes.transposed() * *df * inverse_transposed.transposed() * *axes;
-        let mut change = Mat::ZERO;
-        for i in 0..D {
-            for k in 0..D {
-                change.0[i][i] += self.stiffness(i, k) * l.0[k][k];
-                if k != i {
-                    let turning = self.shear * slopes[i][k];
-                    change.0[i][k] += turning * (squares[k] * l.0[i][k] + squares[i] * l.0[k][i]);
-                }
-                change.0[i][k] -= self.kirchhoff[i] * l.0[k][i];
-            }
-        }
-        *axes * change * axes.transposed() * *inverse_transposed
     }
 
     /// Cauchy stress within the dimensions of the body.
