@@ -12,6 +12,10 @@
 //! gap. d = Δy − (rigid part) needs no invariants. ε suppresses quotients of round-off where the
 //! nodes move as a rigid body: the work is then wrong by less than ε |ΔG − ∇G·Δy| / |d|.
 //!
+//! A node and the point of an obstacle on which it rests may have no distance: nothing but round-off
+//! is left of d and of m = ΔG − ∇G·Δy then, and their quotient would be any direction. With the
+//! round-off ν of m, m − ν²/m takes its place, and zero where |m| ≤ ν.
+//!
 //! Both gaps refer to one facet. A closed pair that is handed over had a gap J to the extension of
 //! its new facet; its force does the work −λJ. With G_n = 0 instead, the correction would have to
 //! account for J too, which it can only by turning the force by any angle where J is not small
@@ -31,6 +35,9 @@ use crate::rows::Row;
 
 /// Regularisation ε of the discrete gradient, relative to the size of the stencil.
 const ROUND_OFF: f64 = 1e-7;
+
+/// Round-off ν of ΔG − ∇G·Δy, relative to Σ |∂G/∂y| (|y| + |Δy|).
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// The discrete gradient of one gap, and buffers. All vectors are over the dofs of the gap's row.
 #[derive(Clone, Debug, Default)]
@@ -59,6 +66,8 @@ pub struct DiscreteGradient {
     factor: f64,
     /// Denominator |d|² + ε² of the factor α.
     size: f64,
+    /// Derivative of the numerator of α by m = ΔG − ∇G·Δy.
+    share: f64,
     /// Gradient of the factor α by the end positions.
     slope: Vec<f64>,
 }
@@ -73,6 +82,8 @@ impl DiscreteGradient {
         self.middle.extend_from_slice(middle.gradient);
         gather(middle, y, &mut self.arms);
         gather(middle, increment, &mut self.moved);
+        let sizes = self.arms.iter().zip(&self.moved).map(|(y, moved)| y.abs() + moved.abs());
+        let terms: f64 = self.middle.iter().zip(sizes).map(|(slope, size)| slope.abs() * size).sum();
         self.centred.clone_from(&self.moved);
         remove_mean(&mut self.arms, d);
         remove_mean(&mut self.centred, d);
@@ -83,8 +94,12 @@ impl DiscreteGradient {
         let deformed = dot(&self.deforming, &self.deforming);
         self.size = deformed + ROUND_OFF * ROUND_OFF * stencil;
         let missing = change - dot(&self.middle, &self.moved);
+        let noise = (NOISE * terms / missing).abs();
+        let is_noise = noise.is_nan() || noise >= 1.0;
+        self.share = if is_noise { 0.0 } else { 1.0 + noise * noise };
+        let counted = if is_noise { 0.0 } else { missing * (1.0 - noise * noise) };
         // In one dimension the gap is linear.
-        self.factor = if d > 1 && self.size > 0.0 { missing / self.size } else { 0.0 };
+        self.factor = if d > 1 && self.size > 0.0 { counted / self.size } else { 0.0 };
         self.gradient.clear();
         let corrected = |(g, d): (&f64, &f64)| g + self.factor * d;
         self.gradient.extend(self.middle.iter().zip(&self.deforming).map(corrected));
@@ -127,6 +142,7 @@ impl DiscreteGradient {
         let count = rotations(d);
         let factor = self.factor;
         let size = self.size;
+        let share = self.share;
         // Σ ω_j G_j of a vector.
         let spun = |vector: &[f64], q: usize| -> f64 {
             (0..count).map(|j| rotation[j] * turned_entry(vector, d, j, q)).sum()
@@ -142,10 +158,11 @@ impl DiscreteGradient {
         }
         slope.clear();
         slope.resize(n, 0.0);
-        for (q, slope) in slope.iter_mut().enumerate().filter(|_| d > 1 && size > 0.0) {
+        for (q, slope) in slope.iter_mut().enumerate().filter(|_| factor != 0.0) {
             let bent = 0.5 * dot(&matrix[q * n..(q + 1) * n], moved);
             let longer = deforming[q] + 0.5 * spun(deforming, q);
-            *slope = (end.gradient[q] - middle[q] - bent - 2.0 * factor * longer) / size;
+            let numerator = share * (end.gradient[q] - middle[q] - bent);
+            *slope = (numerator - 2.0 * factor * longer) / size;
         }
         let nodes = (n / d.max(1)) as f64;
         // Σ ω_j G_j of the unit vector of component q, at component p of the same node.

@@ -133,20 +133,11 @@ pub(crate) fn four<const D: usize>(mats: &Mats<D>) -> Mat<D, Four> {
     mat
 }
 
-/// The numbers of up to four points with `size` ≤ `MOST` each, number by number; zero in the other
-/// lanes.
+/// The number k of each of up to four points with `size` numbers each; zero in the other lanes.
 #[inline(always)]
-pub(crate) fn four_each<const MOST: usize>(numbers: &[f64], size: usize) -> [Four; MOST] {
-    let mut of_points = [[0.0; MOST]; LANES];
-    for (own, given) in of_points.iter_mut().zip(numbers.chunks_exact(size)) {
-        own[..size].copy_from_slice(given);
-    }
-    let [a, b, c, d] = of_points;
-    let mut each = [Four([0.0; LANES]); MOST];
-    for k in 0..size {
-        each[k] = Four([a[k], b[k], c[k], d[k]]);
-    }
-    each
+pub(crate) fn four_of(numbers: &[f64], size: usize, k: usize) -> Four {
+    let number = |l: usize| numbers.get(l * size + k).copied().unwrap_or(0.0);
+    Four([number(0), number(1), number(2), number(3)])
 }
 
 /// The lanes of a matrix.

@@ -3,7 +3,8 @@
 
 use carom_algebra::jacobian_error;
 use carom_contact::{
-    Detection, DiscreteGradient, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows, Surface,
+    Carrier, Detection, DiscreteGradient, Kinematics, NodeToFacet, NodeToObstacle, Obstacle, Pair, Rows,
+    Surface,
 };
 use carom_solid::FacetShape;
 
@@ -152,4 +153,22 @@ fn it_keeps_the_force_of_a_node_that_slides_on_a_closed_facet() {
     let (force, _) = discrete_gradient(&contact, &before, &after);
     let work: f64 = force.iter().zip(after.iter().zip(&before)).map(|(f, (b, a))| f * (b - a)).sum();
     assert!(work.abs() < 1e-15 && (force[0].hypot(force[1]) - 1.0).abs() < 0.1, "{work:e} {force:?}");
+}
+
+/// A node that rests at the very point of an obstacle whose node carries it: nothing but round-off
+/// is left of their distance, and both move by numbers that are not exact.
+#[test]
+fn round_off_between_a_node_and_an_obstacle_does_not_turn_the_force() {
+    let carrier = Carrier { nodes: vec![1], origin: [0.0; 3], length: 1.0 };
+    let wall = Obstacle::plane(&[0.0, 0.0], &[1.0, 0.0]);
+    let contact = NodeToObstacle::new(vec![0], 2, wall).carried_by(carrier);
+    for step in 1..50 {
+        let from = 0.03 * f64::from(step) * 0.1;
+        let to = 0.03 * f64::from(step + 1) * 0.1;
+        let off = from * (1.0 + f64::EPSILON);
+        let (force, derivative) = discrete_gradient(&contact, &[off, 1e-17, from, 0.0], &[to, 0.0, to, 0.0]);
+        let wrong = force.iter().zip([1.0, 0.0, -1.0, 0.0]).map(|(f, e): (&f64, f64)| (f - e).abs());
+        assert!(wrong.fold(0.0, f64::max) < 1e-12, "{step}: {force:?}");
+        assert!(derivative.iter().all(|slope| slope.abs() < 1e-3), "{step}: {derivative:?}");
+    }
 }

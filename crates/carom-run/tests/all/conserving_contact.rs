@@ -164,3 +164,53 @@ fn one_node_separates_with_e_times_its_approach_speed() {
         assert!((sim.state().v[0] - e).abs() < 1e-8, "{e}: {}", sim.state().v[0]);
     }
 }
+
+/// Half of a bar that meets a wall, the wall at rest or moving: the same impact (Galilei). Its node
+/// in the plane of symmetry stays at the very node that carries the wall.
+#[test]
+fn a_wall_that_moves_gives_the_impact_of_one_at_rest() {
+    const HALF: &str = r#"
+dimension = 2
+plane = "strain"
+[[material]]
+name = "steel"
+law = "linear-elastic"
+density = 1.0
+young = 1000.0
+poisson = 0.3
+[[body]]
+name = "bar"
+material = "steel"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [2.0, 0.2], cells = [20, 1] }
+velocity = [-0.03, 0.0]
+[[support]]
+on = ["bar.bottom"]
+fix = ["y"]
+[[contact]]
+name = "wall"
+secondary = "bar.left"
+primary = { plane = { point = [0.0, 0.0], normal = [1.0, 0.0] } }
+[time]
+end = 0.1
+step = 0.002
+scheme = { kind = "energy-momentum" }
+"#;
+    let moving = "motion = { x = \"0.03*t\" }, plane";
+    let text = HALF.replace("{ plane", &format!("{{ {moving}")).replace("[-0.03, 0.0]", "[0.0, 0.0]");
+    let mut at_rest = simulation(HALF, &[""; 0]);
+    let mut pushed = simulation(&text, &[""; 0]);
+    let nodes = at_rest.model().dofs() / 2;
+    while !at_rest.finished() {
+        at_rest.advance(&mut GridReport::default()).unwrap();
+        pushed.advance(&mut GridReport::default()).unwrap();
+        let way = 0.03 * at_rest.state().time;
+        for node in 0..nodes {
+            let [here, there] = [&pushed, &at_rest].map(|sim| sim.state().y[2 * node]);
+            assert!((here - way - there).abs() < 1e-12, "{node} at {way}: {here} {there}");
+        }
+        let [here, there] = [&pushed, &at_rest].map(|sim| sim.state().contact_forces[0][0]);
+        assert!((here - there).abs() < 1e-8, "{here} {there}");
+    }
+    assert!(pushed.state().contact_forces[0][0].abs() > 0.1);
+}

@@ -30,7 +30,7 @@ use super::kinematics::exp_m1;
 use super::past::Past;
 use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
 use super::{NotPositive, Thickness};
-use crate::points::{four, four_each, lanes};
+use crate::points::{four, four_of, lanes};
 
 /// Von Mises plasticity with isotropic hardening in logarithmic strains.
 #[derive(Clone, Debug, PartialEq)]
@@ -231,14 +231,17 @@ impl<const D: usize> Material<D> for J2 {
         memory: &mut [f64],
     ) -> Result<Option<FourAfter<D>>, NotPositive> {
         let size = components(D) + 1;
-        let start = four_each::<MOST>(past.memory, size);
-        let point = self.kinematics(h, Remembered::read(|k| start[k]))?;
+        let start = Remembered::read(|k| four_of(past.memory, size, k));
+        let point = self.kinematics(h, start)?;
         if !memory.is_empty() {
-            point.end().write(|k, numbers| {
-                for (of_point, number) in memory.chunks_exact_mut(size).zip(numbers.0) {
-                    of_point[k] = number;
-                }
-            });
+            point.end().write(
+                #[inline(always)]
+                |k, numbers: Four| {
+                    for (of_point, number) in memory.chunks_exact_mut(size).zip(numbers.0) {
+                        of_point[k] = number;
+                    }
+                },
+            );
         }
         Ok(Some(FourAfter {
             stored: point.stored,
@@ -256,8 +259,8 @@ impl<const D: usize> Material<D> for J2 {
         _: usize,
     ) -> Result<InLanes<D>, NotPositive> {
         let size = components(D) + 1;
-        let start = four_each::<MOST>(past.memory, size);
-        let point = self.kinematics(&four(h), Remembered::read(|k| start[k]))?;
+        let start = Remembered::read(|k| four_of(past.memory, size, k));
+        let point = self.kinematics(&four(h), start)?;
         Ok(lanes(&point.of.change(&four(dh))))
     }
 
