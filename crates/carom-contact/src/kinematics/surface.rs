@@ -189,18 +189,23 @@ impl Surface {
         })
     }
 
-    /// The kink between a facet and the one that follows it. Behind a plane of symmetry the mirror
-    /// image of the facet follows.
-    pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> Kink {
+    /// Tangents of a facet and of the one that follows it at their joint. Behind a plane of symmetry
+    /// the mirror image of the facet follows.
+    pub(crate) fn tangents_at_joint(&self, facet: usize, next: usize, y: Places) -> [Vector<2>; 2] {
         let here = self.facet(facet).at(y, 1.0).tangent;
         let there = self.facet(next).at(y, -1.0).tangent;
         let mirrored = |tangent, along: Vector<2>| reflected(tangent, along * along.norm().recip());
-        let [here, there] = match [facet, next].map(|facet| self.is_mirror(facet)) {
+        match [facet, next].map(|facet| self.is_mirror(facet)) {
             [false, false] => [here, there],
             [false, true] => [here, mirrored(here, there)],
             [true, false] => [mirrored(there, here), there],
             [true, true] => [here, here],
-        };
+        }
+    }
+
+    /// The kink between a facet and the one that follows it.
+    pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> Kink {
+        let [here, there] = self.tangents_at_joint(facet, next, y);
         let size = here.norm() * there.norm();
         let sine = (here[0] * there[1] - here[1] * there[0]) / size;
         Kink { cosine: here.dot(&there) / size, sine }

@@ -9,12 +9,14 @@
 //! ```
 //!
 //! on which both have the same gap, and at an end or a kink of more than 30° the normal (x − y_v)·t
-//! = 0. What lies beyond an end has no partner and does not count. The gap is continuous at the
+//! = 0. Behind an end in a plane of symmetry the mirror image of the facet follows. What lies beyond
+//! another end has no partner and does not count. The gap is continuous at the
 //! joints, so that the gradient of the weighted gap need not account for their motion, while its
 //! derivative does (`joint.rs`); the motion of an end is in `border.rs`.
 
 use carom_algebra::Vector;
 
+use crate::kinematics::facets::Facets;
 use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
 use crate::kinematics::surface::Surface;
@@ -53,18 +55,18 @@ impl Region {
         let of = primary.facet(facet);
         let [first, middle, last] = [-1.0, 0.0, 1.0].map(|xi| of.at(y, xi));
         let unit = |tangent: Vector<2>| tangent * tangent.norm().recip();
-        let blunt = |forward: bool| {
-            let next = primary.neighbour_of_side(facet, forward)?;
+        let continued = |forward: bool| {
+            let next = primary.neighbour(facet, forward)?;
             let [one, other] = if forward { [facet, next] } else { [next, facet] };
-            primary.is_blunt(one, other, y).then_some(next)
+            let continues = primary.is_of_side(next) || primary.is_mirror(next);
+            let tangents = || primary.tangents_at_joint(one, other, y);
+            (continues && primary.is_blunt(one, other, y)).then(|| unit(tangents()[usize::from(forward)]))
         };
-        let [previous, next] = [false, true].map(blunt);
-        let before = previous.map_or(Vector::ZERO, |facet| unit(primary.facet(facet).at(y, 1.0).tangent));
-        let after = next.map_or(Vector::ZERO, |facet| unit(primary.facet(facet).at(y, -1.0).tangent));
+        let [before, after] = [false, true].map(continued);
         Self {
-            start: [first.position, before + unit(first.tangent)],
-            end: [last.position, unit(last.tangent) + after],
-            is_free: [previous.is_none(), next.is_none()],
+            start: [first.position, before.unwrap_or(Vector::ZERO) + unit(first.tangent)],
+            end: [last.position, unit(last.tangent) + after.unwrap_or(Vector::ZERO)],
+            is_free: [before.is_none(), after.is_none()],
             normal: middle.normal,
             length: (last.position - first.position).norm(),
         }
