@@ -136,7 +136,8 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
                 }
                 return Err(beside(case, k, tie, place, &point));
             }
-            return Err(apart(case, k, tie, place, &point));
+            let is_near = point.distance < target.length(facet);
+            return Err(apart(case, k, tie, place, point.distance, is_near));
         }
         tied.push(Tied { node, weights: weights(&target.facets[facet], &point.values) });
     }
@@ -181,23 +182,31 @@ fn beside(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], point: &FacetPo
     let at = coordinates(&place[..case.dimension]);
     let what = format!("a node of {} at {at} has no partner on {}", tie.secondary, tie.primary);
     let why = format!("it lies beside the primary side, {:.3e} from its nearest point", point.distance);
-    let help = "exchange `secondary` and `primary` if the other side is the smaller one, or give \
-        `overhang = \"free\"`, which leaves such nodes free";
+    let points = if tie.method == TieMethod::Mortar { "`method = \"points\"` with " } else { "" };
+    let help = format!(
+        "exchange `secondary` and `primary` if the other side is the smaller one, or give {points}\
+         `overhang = \"free\"`, which leaves such nodes free"
+    );
     Problem::new(format!("tie[{k}].secondary"), what, why, help)
 }
 
-fn apart(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], point: &FacetPoint) -> Problem {
+fn apart(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], distance: f64, is_near: bool) -> Problem {
     let at = coordinates(&place[..case.dimension]);
     let what = format!(
-        "a node of {} at {at} is {:.3e} away from {}, which is not closed",
-        tie.secondary, point.distance, tie.primary
+        "a node of {} at {at} is {distance:.3e} away from {}, which is not closed",
+        tie.secondary, tie.primary
     );
     let why = "a force at a distance from its point would have a moment that nothing balances";
-    let help = format!(
-        "place the bodies so that the sides touch, use meshes of higher degree where they are curved, or give \
-         `adjust = {:.2e}`: nodes up to so far away are then moved onto the primary side, without stress",
-        1.01 * point.distance
-    );
+    let help = if is_near {
+        format!(
+            "place the bodies so that the sides touch, use meshes of higher degree where they are curved, or \
+             give `adjust = {:.2e}`: nodes up to so far away are then moved onto the primary side, without \
+             stress",
+            1.01 * distance
+        )
+    } else {
+        "name the two sides that touch, or place the bodies so that they do".to_owned()
+    };
     let key = if tie.adjust.is_some() { "adjust" } else { "secondary" };
     Problem::new(format!("tie[{k}].{key}"), what, why, help)
 }

@@ -69,7 +69,7 @@ impl Tying<'_> {
             "tie `{name}` and a support both hold the node of body \"{}\" at {at} along {axis}",
             body.map_or("", |body| body.name.as_str())
         );
-        let why = "a tied node moves with the primary side, which has no such support there";
+        let why = "a tied node moves with the primary side, which no support moves or holds like this there";
         let help = "give the side of the other body the same support, leave this node's side out of it, or \
             exchange `secondary` and `primary` of the tie";
         Problem::new(format!("tie[{tie}].secondary"), what, why, help)

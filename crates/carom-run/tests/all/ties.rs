@@ -404,7 +404,7 @@ fn messages_name_place_cause_and_cure() {
             "held",
             &held,
             "secondary = \"upper.bottom\"",
-            ["tie `joint` and a support both hold", "no such support there", "the same support"],
+            ["tie `joint` and a support both hold", "no support moves or holds", "the same support"],
         ),
         (
             "light",

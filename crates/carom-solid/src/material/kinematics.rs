@@ -51,10 +51,21 @@ pub fn ln_1p<T: Real>(x: T) -> [T; 2] {
     series_of_ln_1p(x)
 }
 
-/// Reciprocals in the series of artanh and of the exponential. Loops over indices are unrolled.
+/// Coefficients of the series of artanh. Loops over indices are unrolled.
 const ODD: [f64; 5] = [1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0];
-const WHOLE: [f64; 9] =
-    [1.0 / 10.0, 1.0 / 9.0, 1.0 / 8.0, 1.0 / 7.0, 1.0 / 6.0, 1.0 / 5.0, 1.0 / 4.0, 1.0 / 3.0, 1.0 / 2.0];
+
+/// Coefficients 1/k! of the exponential, k = 9, 8, …, 1.
+const FACTORIALS: [f64; 9] = [
+    1.0 / 362_880.0,
+    1.0 / 40_320.0,
+    1.0 / 5_040.0,
+    1.0 / 720.0,
+    1.0 / 120.0,
+    1.0 / 24.0,
+    1.0 / 6.0,
+    0.5,
+    1.0,
+];
 
 #[inline(always)]
 fn series_of_ln_1p<T: Real>(x: T) -> [T; 2] {
@@ -79,9 +90,9 @@ pub fn exp_m1<T: Real>(x: T) -> T {
 
 #[inline(always)]
 fn series_of_exp_m1<T: Real>(x: T) -> T {
-    let mut series = T::of(1.0);
-    for k in 0..WHOLE.len() {
-        series = T::of(1.0) + x * series * T::of(WHOLE[k]);
+    let mut series = T::of(1.0 / 3_628_800.0);
+    for k in 0..FACTORIALS.len() {
+        series = T::of(FACTORIALS[k]) + x * series;
     }
     x * series
 }

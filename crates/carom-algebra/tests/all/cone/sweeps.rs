@@ -161,3 +161,35 @@ fn without_friction_it_is_the_complementarity_of_normal_forces() {
     assert!((z[0] - normal[0]).abs() < 1e-15 && (z[1] - normal[1]).abs() < 1e-15);
     assert_eq!(z[2..], [0.0, 0.0]);
 }
+
+/// A node between two walls that meet at 70°: of the four rows of its two degrees of freedom any
+/// two depend on the others, and sweeps change its forces by a thousandth each. It slips on both.
+#[test]
+fn forces_of_dependent_rows_drift_to_the_solution() {
+    let angle = 70.0_f64.to_radians();
+    let walls = [0.0, angle];
+    let normals = walls.map(|at: f64| [at.cos(), at.sin()]);
+    let tangents = normals.map(|[x, y]| [-y, x]);
+    let rows = [normals, tangents].concat();
+    let a: Vec<f64> =
+        (0..16).map(|e| 400.0 * (0..2).map(|i| rows[e / 4][i] * rows[e % 4][i]).sum::<f64>()).collect();
+    let mut seen = 0;
+    for k in 0..20 {
+        // Motions that the walls prevent, and slips that differ from theirs by little.
+        let free = [-1350.0, -750.0 - 40.0 * f64::from(k)];
+        let along = |row: &[f64; 2]| row[0] * free[0] + row[1] * free[1];
+        let b: Vec<f64> =
+            rows.iter().zip([0.0, 0.0, 1.1, 0.4]).map(|(row, more)| along(row) + more).collect();
+        let mut z = Vec::new();
+        coulomb(&Couplings::dense(4, a.clone()), &b, &KINDS(0.3, f64::INFINITY), &mut z).unwrap();
+        let u: Vec<f64> = (0..4).map(|i| b[i] + (0..4).map(|j| a[i * 4 + j] * z[j]).sum::<f64>()).collect();
+        for i in 0..2 {
+            assert!(z[i] >= 0.0 && u[i] >= -1e-8 && z[i] * u[i].abs() < 1e-7, "{k}: {z:?} {u:?}");
+            assert!(z[i + 2].abs() <= 0.3 * z[i] + 1e-10, "{k}: {z:?}");
+            let slips = z[i] > 0.0 && z[i + 2].abs() >= 0.3 * z[i] - 1e-10;
+            assert!(if slips { z[i + 2] * u[i + 2] <= 1e-8 } else { z[i] == 0.0 || u[i + 2].abs() < 1e-8 });
+            seen += usize::from(slips);
+        }
+    }
+    assert!(seen > 20, "{seen}");
+}
