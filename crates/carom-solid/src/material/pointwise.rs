@@ -277,13 +277,8 @@ fn evolve_point<const D: usize, L: Material<D>>(
 ) -> Result<(), NotPositive> {
     let h = get(&step.h, l);
     let before = step.before.as_ref().map(|before| get(before, l));
-    if let Some(change) = &step.change {
-        let change = get(change, l);
-        let stress = match &before {
-            Some(before) => change_between(law, [before, &h], &change)?,
-            None => law.change(&law.at(&h)?, &change),
-        };
-        set(&mut out.stress, l, &stress);
+    if let (Some(before), Some(change)) = (&before, &step.change) {
+        set(&mut out.stress, l, &change_between(law, [before, &h], &get(change, l))?);
         return Ok(());
     }
     let end = if let Some(before) = &before {
