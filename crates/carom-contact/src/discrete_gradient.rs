@@ -12,9 +12,9 @@
 //! gap. d = Δy − (rigid part) needs no invariants. ε suppresses quotients of round-off where the
 //! nodes move as a rigid body: the work is then wrong by less than ε |ΔG − ∇G·Δy| / |d|.
 //!
-//! A node and the point of an obstacle on which it rests may have no distance: nothing but round-off
-//! is left of d and of m = ΔG − ∇G·Δy then, and their quotient would be any direction. With the
-//! round-off ν of m, m − ν²/m takes its place, and zero where |m| ≤ ν.
+//! A node and the point of an obstacle on which it rests may have no distance: nothing but
+//! round-off is left of d and of m = ΔG − ∇G·Δy then, and their quotient would be any direction.
+//! With the round-off ν of m, m − ν²/m takes its place, and zero where |m| ≤ ν.
 //!
 //! Both gaps refer to one facet. A closed pair that is handed over had a gap J to the extension of
 //! its new facet; its force does the work −λJ. With G_n = 0 instead, the correction would have to

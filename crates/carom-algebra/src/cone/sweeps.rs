@@ -172,9 +172,10 @@ impl Coupled<'_> {
         }
     }
 
-    /// A sweep, and the way that it takes as long as the next sweeps would take the same or a shorter
-    /// one, twice as far each time. Where rows of contacts depend on each other, forces that move
-    /// nothing drift by the same amount in every sweep until another contact slips or opens.
+    /// A sweep, and the way that it takes as long as the next sweeps would take the same or a
+    /// shorter one, twice as far each time. Where rows of contacts depend on each other, forces
+    /// that move nothing drift by the same amount in every sweep until another contact slips or
+    /// opens.
     fn leap(&self, z: &mut [f64]) {
         let start = z.to_vec();
         self.sweep(z);

@@ -189,8 +189,8 @@ impl Surface {
         })
     }
 
-    /// Tangents of a facet and of the one that follows it at their joint. Behind a plane of symmetry
-    /// the mirror image of the facet follows.
+    /// Tangents of a facet and of the one that follows it at their joint. Behind a plane of
+    /// symmetry the mirror image of the facet follows.
     pub(crate) fn tangents_at_joint(&self, facet: usize, next: usize, y: Places) -> [Vector<2>; 2] {
         let here = self.facet(facet).at(y, 1.0).tangent;
         let there = self.facet(next).at(y, -1.0).tangent;

@@ -9,10 +9,10 @@
 //! ```
 //!
 //! on which both have the same gap, and at an end or a kink of more than 30° the normal (x − y_v)·t
-//! = 0. Behind an end in a plane of symmetry the mirror image of the facet follows. What lies beyond
-//! another end has no partner and does not count. The gap is continuous at the
-//! joints, so that the gradient of the weighted gap need not account for their motion, while its
-//! derivative does (`joint.rs`); the motion of an end is in `border.rs`.
+//! = 0. Behind an end in a plane of symmetry the mirror image of the facet follows. What lies
+//! beyond another end has no partner and does not count. The gap is continuous at the joints, so
+//! that the gradient of the weighted gap need not account for their motion, while its derivative
+//! does (`joint.rs`); the motion of an end is in `border.rs`.
 
 use carom_algebra::Vector;
 
