@@ -1,5 +1,7 @@
 //! Builds the simulation of a case: the model with a stepper, on the grid of times.
 
+use std::ops::Range;
+
 use carom_algebra::LinearError;
 use carom_case::{
     Case, ContactLaw, ContactPoint, ContactSpec, Fallback, Overlap, Problem, Problems, TangentRule,
@@ -121,7 +123,7 @@ impl<'a> Setup<'a> {
         let placed = case.initial.is_some() || case.manufactured.is_some();
         // A body whose cells are inverted has its outside within.
         if let Some(rejected) = inverted(case, &model).filter(|_| !placed) {
-            return Err(vec![no_start(case, placed, &rejected)].into());
+            return Err(vec![no_start(case, placed, &[], &rejected)].into());
         }
         let threads = self.threads.of(model.reference.len());
         let overlaps =
@@ -139,9 +141,11 @@ impl<'a> Setup<'a> {
         let stepper = stepper(case, &model, self.kernel)?;
         let inertia = !case.time.scheme.is_static();
         let grid = grid(case, overlap::floor(case, &model));
+        let obstacles: Vec<_> =
+            model.parts[case.bodies.len()..].iter().map(|part| (part.nodes(), part.name.clone())).collect();
         Simulation::new(model, stepper, grid, inertia, before, threads)
             .map(|simulation| simulation.with_fallback(fallback))
-            .map_err(|rejected| vec![no_start(case, placed, &rejected)].into())
+            .map_err(|rejected| vec![no_start(case, placed, &obstacles, &rejected)].into())
     }
 
     /// Builds the model and continues from a state of an earlier run of the same case. The run that
@@ -223,8 +227,18 @@ fn inverted(case: &Case, model: &Model) -> Option<Rejected> {
     Some(Rejected::Inverted { body, inverted })
 }
 
-/// Why a case has no initial state, with its key and a suggestion.
-fn no_start(case: &Case, placed: bool, rejected: &Rejected) -> Problem {
+/// Why a case has no initial state, with its key and a suggestion; `obstacles`: nodes and names of
+/// those that move.
+fn no_start(case: &Case, placed: bool, obstacles: &[(Range<usize>, String)], rejected: &Rejected) -> Problem {
+    if let Rejected::Jump { node, distance } = rejected
+        && let Some((_, name)) = obstacles.iter().find(|(nodes, _)| nodes.contains(node))
+        && let Some(contact) = case.contacts.iter().find(|contact| contact.name == *name)
+    {
+        let what = format!("the obstacle of contact \"{name}\" would jump at the start");
+        let why = case.in_units(&format!("its motion is {distance:.3e} [length] at t = 0"));
+        let help = "subtract from each formula its value at t = 0, and place the obstacle where it begins";
+        return Problem::new(contact.path("primary"), what, why, help);
+    }
     let (path, what, help) = match rejected {
         Rejected::NoValue(value) => {
             let table = if value.what.starts_with("mu ") { "contact" } else { "load" };

@@ -16,6 +16,8 @@ use super::tie_side::{TieSide, place_of};
 
 /// Distance that is closed unless the tie says more, over the length of a facet.
 const OFFSET: f64 = 1e-6;
+/// Distance, over the length of a facet, below which moving the node may close a tie.
+const ADJUSTABLE: f64 = 0.25;
 /// Distance along the nearest facet, as a share of the distance from it, from which on a node is
 /// beside the primary side and not above it.
 const BESIDE: f64 = 0.1;
@@ -136,7 +138,7 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
                 }
                 return Err(beside(case, k, tie, place, &point));
             }
-            let is_near = point.distance < target.length(facet);
+            let is_near = point.distance < ADJUSTABLE * target.length(facet);
             return Err(apart(case, k, tie, place, point.distance, is_near));
         }
         tied.push(Tied { node, weights: weights(&target.facets[facet], &point.values) });
@@ -151,7 +153,7 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
     if tied.is_empty() {
         let what = format!("tie `{}` has no nodes", tie.name);
         let why = format!("no node of {} lies on {}", tie.secondary, tie.primary);
-        let help = "name the two sides that touch, or move one of the bodies with `at`";
+        let help = "name the two sides that touch, or `place` one of the bodies there";
         return Err(Problem::new(format!("tie[{k}].secondary"), what, why, help));
     }
     Ok(Found { bodies: [secondary, primary], tied, sides: [nodes, carriers] })
@@ -193,7 +195,7 @@ fn beside(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], point: &FacetPo
 fn apart(case: &Case, k: usize, tie: &TieSpec, place: [f64; 3], distance: f64, is_near: bool) -> Problem {
     let at = coordinates(&place[..case.dimension]);
     let what = format!(
-        "a node of {} at {at} is {distance:.3e} away from {}, which is not closed",
+        "a node of {} at {at} is {distance:.3e} away from {}: the tie has a gap there",
         tie.secondary, tie.primary
     );
     let why = "a force at a distance from its point would have a moment that nothing balances";

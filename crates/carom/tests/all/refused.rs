@@ -46,6 +46,13 @@ fn check_and_run_refuse_the_same() {
     place.file("impact.toml", IMPACT).file("blocks.toml", BLOCKS).file("square.msh", SQUARE);
     for (case, sets, words) in [
         ("blocks", &["support.ram.move.y=\"0.01 - t\""][..], "a support would jump at the start"),
+        (
+            "blocks",
+            &[
+                "contact.joint.primary={ plane = { point = [0, 0], normal = [0, 1] }, motion = { y = \"t + 0.1\" } }",
+            ],
+            "the obstacle of contact \"joint\" would jump at the start",
+        ),
         ("blocks", &["support.ram.move.y=\"1/t\""], "has no value at t = 0"),
         ("blocks", &["body.high.place.shift=[0.0, -0.1]"], "overlap at the start by 0.1 m"),
         // All nodes of both sides are held: the overlap cannot be closed.
