@@ -21,8 +21,8 @@ pub struct PrincipalAxes<const D: usize, T = f64> {
     pub axes: Mat<D, T>,
 }
 
-/// The eigenvalues and eigenvectors of a symmetric tensor with finite components, or of several in
-/// lanes.
+/// The eigenvalues and eigenvectors of a symmetric tensor, or of several in lanes. The squares of
+/// its components must be finite, and those of components that count no denormal numbers.
 ///
 /// ```
 /// use carom_algebra::{Mat, principal_axes};

@@ -95,7 +95,7 @@ impl DiscreteGradient {
         self.size = deformed + ROUND_OFF * ROUND_OFF * stencil;
         let missing = change - dot(&self.middle, &self.moved);
         let noise = (NOISE * terms / missing).abs();
-        let is_noise = noise.is_nan() || noise >= 1.0;
+        let is_noise = missing == 0.0 || noise >= 1.0;
         self.share = if is_noise { 0.0 } else { 1.0 + noise * noise };
         let counted = if is_noise { 0.0 } else { missing * (1.0 - noise * noise) };
         // In one dimension the gap is linear.

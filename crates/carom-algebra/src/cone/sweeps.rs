@@ -23,7 +23,7 @@ use crate::sums::max_abs;
 const SWEEPS: usize = 10;
 /// Largest number of attempts to solve the problem exactly.
 const ATTEMPTS: usize = 200;
-/// Number of attempts after which the way of a sweep is followed further.
+/// Number of attempts from which on the way of a sweep is followed further.
 const PATIENCE: usize = 10;
 /// Longest way, in those of one sweep, that is followed at once.
 const FARTHEST: f64 = 65536.0;
@@ -172,21 +172,24 @@ impl Coupled<'_> {
         }
     }
 
-    /// A sweep, and the way that it takes as long as the next sweeps would take the same or a
-    /// shorter one, twice as far each time. Where rows of contacts depend on each other, forces
-    /// that move nothing drift by the same amount in every sweep until another contact slips or
-    /// opens.
+    /// Follows the way of a sweep, twice as far each time, while a sweep from there moves no force
+    /// further than the first one did. Where rows of contacts depend on each other, forces that
+    /// move nothing drift by the same amount in every sweep until another contact slips or opens.
     fn leap(&self, z: &mut [f64]) {
         let start = z.to_vec();
         self.sweep(z);
         let way: Vec<f64> = z.iter().zip(&start).map(|(now, start)| now - start).collect();
         let length = max_abs(&way) * (1.0 + ROUND_OFF);
+        let mut far = start;
+        let mut next = z.to_vec();
         let mut factor = 1.0;
         while factor < FARTHEST {
             factor *= 2.0;
-            let mut far: Vec<f64> = z.iter().zip(&way).map(|(now, way)| now + factor * way).collect();
+            for (far, (now, way)) in far.iter_mut().zip(z.iter().zip(&way)) {
+                *far = now + factor * way;
+            }
             self.admit(&mut far);
-            let mut next = far.clone();
+            next.copy_from_slice(&far);
             self.sweep(&mut next);
             let is_longer = far.iter().zip(&next).any(|(far, next)| (next - far).abs() > length);
             if is_longer {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use carom_run::recording::Rows;
-use carom_run::{Setup, Simulation};
+use carom_run::{GridReport, Setup, Simulation};
 
 use super::common::{case, continues_with_the_same_bits, finish, simulation};
 
@@ -395,4 +395,46 @@ fn a_shear_limit_counts_every_area_once() {
         let force = last.state().contact_forces[0][0];
         assert!((force.abs() - 5.0 * slips).abs() < 1e-8, "{element}: {force}");
     }
+}
+
+/// A block that slides past the end of a table on rollers, without friction: the mirror image of
+/// the table, on which nothing rests, takes no energy. What is lost falls with the step.
+#[test]
+fn a_side_that_passes_a_plane_of_symmetry_keeps_its_energy() {
+    const SLIDE: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 500.0, poisson = 0.3 }]
+contact = [{ name = "c", secondary = "b.bottom", primary = "p.top", method = "mortar" }]
+time = { end = 0.13, step = 5e-4, scheme = { kind = "chung-hulbert", rho_inf = 1.0 } }
+[[body]]
+name = "b"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.3, 0.0], max = [0.9, 0.2], cells = [5, 2] }
+gravity = [0.0, -10.0]
+velocity = [1.0, 0.0]
+[[body]]
+name = "p"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-0.5, -0.3], max = [1.0, 0.0], cells = [11, 3] }
+[[support]]
+on = ["p.bottom"]
+fix = ["x", "y"]
+[[support]]
+on = ["p.right"]
+fix = ["x"]
+"#;
+    let lost = |step: &str| {
+        let mut sim = simulation(SLIDE, &[format!("time.step={step}")]);
+        let start = sim.state().ledger.total();
+        let mut most = 0.0_f64;
+        while !sim.finished() {
+            sim.advance(&mut GridReport::default()).unwrap();
+            most = most.max((sim.state().ledger.total() - start).abs());
+        }
+        most
+    };
+    let [long, short] = ["5e-4", "1.25e-4"].map(lost);
+    assert!(long < 1e-5 && short < 0.2 * long, "{long:e} {short:e}");
 }

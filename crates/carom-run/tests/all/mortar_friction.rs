@@ -80,8 +80,8 @@ fn friction_over_a_joint_takes_no_more_than_mu_times_the_weight() {
 }
 
 /// A block that drops on a slab, and half of both on rollers in the plane of symmetry move alike,
-/// under friction, too: the tangential traction is zero in that plane, and behind it the mirror
-/// image continues the slab, which is bent there in the whole model.
+/// under friction, too: the tangential traction is zero in that plane, and the slab, which the
+/// impact bends, goes on behind it as its mirror image.
 #[test]
 fn half_a_model_moves_like_the_whole() {
     let model = |from: f64, share: usize, support: &str, mu: f64| {

@@ -356,7 +356,19 @@ fn messages_name_place_cause_and_cure() {
     );
     let back = LOWER_TO_UPPER.replace("joint", "back").replace("upper.bottom", "upper.skin");
     let around = format!("{text}{back}");
-    let cases: [(&str, &str, &str, [&str; 3]); 9] = [
+    let cases: [(&str, &str, &str, [&str; 3]); 11] = [
+        (
+            "wide and on average",
+            &wide.replace("primary = \"lower.top\"", "primary = \"lower.top\"\nmethod = \"mortar\""),
+            "secondary = \"upper.bottom\"",
+            ["has no partner on lower.top", "beside the primary side", "`method = \"points\"` with"],
+        ),
+        (
+            "the far side",
+            &text.replace("\"upper.bottom\"", "\"upper.top\""),
+            "secondary = \"upper.top\"",
+            ["away from lower.top", "moment", "name the two sides that touch"],
+        ),
         (
             "wide",
             &wide,
@@ -377,7 +389,7 @@ fn messages_name_place_cause_and_cure() {
             [
                 "tie `joint` has no nodes",
                 "no node of upper.bottom lies on lower.top",
-                "move one of the bodies",
+                "`place` one of the bodies",
             ],
         ),
         (

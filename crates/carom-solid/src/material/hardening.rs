@@ -102,26 +102,41 @@ impl Table {
         Strength { stress: start.stress + rise, stored: start.stored + beyond * (over + 0.5 * rise) }
     }
 
-    /// [`Hardening::flow`], exact: segment by segment.
-    fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> Flow {
-        let mut segment = self.segment(alpha);
+    /// Δα of [`Hardening::flow`], exact: segment by segment.
+    fn flow(&self, alpha: f64, excess: f64, stiffness: f64) -> f64 {
+        let mut strain = 0.0;
         let mut remaining = excess;
-        let mut risen = 0.0;
-        let mut flow = Flow { strain: 0.0, slope: 0.0, hardening: 0.0 };
-        loop {
-            flow.slope = self.slope(segment);
-            let whole = remaining / (stiffness + flow.slope);
-            let room = self.0.get(segment + 1).map_or(f64::INFINITY, |end| end.alpha - alpha - flow.strain);
-            let part = whole.min(room.max(0.0));
-            flow.strain += part;
-            flow.hardening += part * (risen + 0.5 * flow.slope * part);
+        for segment in self.segment(alpha)..self.0.len() {
+            let resistance = stiffness + self.slope(segment);
+            let end = self.0.get(segment + 1).map_or(f64::INFINITY, |end| end.alpha);
+            let whole = remaining / resistance;
+            let room = end - alpha - strain;
+            strain += whole.min(room.max(0.0));
             if whole <= room {
-                return flow;
+                break;
             }
-            risen += flow.slope * part;
-            remaining -= (stiffness + flow.slope) * part;
-            segment += 1;
+            remaining -= resistance * room.max(0.0);
         }
+        strain
+    }
+
+    /// ∫ (σ_y − σ_y(α)) dα from α over a strain, segment by segment.
+    fn hardening(&self, alpha: f64, strain: f64) -> f64 {
+        let mut integral = 0.0;
+        let mut risen = 0.0;
+        let mut from = alpha;
+        for segment in self.segment(alpha)..self.0.len() {
+            let end = self.0.get(segment + 1).map_or(f64::INFINITY, |end| end.alpha);
+            let part = (end.min(alpha + strain) - from).max(0.0);
+            let slope = self.slope(segment);
+            integral += part * (risen + 0.5 * slope * part);
+            risen += slope * part;
+            from = end;
+            if alpha + strain <= end {
+                break;
+            }
+        }
+        integral
     }
 }
 
@@ -184,9 +199,8 @@ impl Hardening {
                 }
             }
             Self::Table(table) => {
-                let strain = alpha.zip(excess, |alpha, excess| table.flow(alpha, excess, stiffness).strain);
-                let hardening =
-                    alpha.zip(excess, |alpha, excess| table.flow(alpha, excess, stiffness).hardening);
+                let strain = alpha.zip(excess, |alpha, excess| table.flow(alpha, excess, stiffness));
+                let hardening = alpha.zip(strain, |alpha, strain| table.hardening(alpha, strain));
                 let slope = (alpha + strain).map(|alpha| table.slope(table.segment(alpha)));
                 Flow { strain, slope, hardening }
             }

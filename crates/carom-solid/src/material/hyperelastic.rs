@@ -153,7 +153,7 @@ pub trait Material<const D: usize>: Send + Sync {
 
     /// A step at four points at once, of a law with memory whose formulas are written for any
     /// number; none of others. Overwrites the memory of the points with that at the end of the
-    /// step, unless it is empty; there may be less than four, then H = 0 in the other lanes.
+    /// step, unless that slice is empty. Of fewer points, H = 0 in the other lanes.
     #[inline(always)]
     fn after_four(
         &self,

@@ -242,8 +242,8 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     }
 }
 
-/// Forces or their increment at all points of a block at once; not of a discrete gradient, nor with
-/// a tangent, nor of laws that are written for one point. Returns whether it was done.
+/// Increments of forces at all points of a block, or the forces of a law that is written for four
+/// points; not of a discrete gradient, nor with a tangent. Returns whether it was done.
 #[inline(always)]
 fn evolve_at_once<const D: usize, L: Material<D>>(
     law: &L,

@@ -5,10 +5,10 @@
 //! (x(ξ) − v)·t = 0,    ∂ξ = −((∂x − ∂v)·t + (x − v)·∂T/|T|) / (x'·t),    T = |T| t = Σ_l N_l' y_l
 //! ```
 //!
-//! where ∂x is that at a fixed ξ. With the gap there, its motion adds g ∂ξ to the gradient of the
-//! integral, with a negative sign where the primary begins. Without it, forces would have no
-//! potential where bodies overhang, and with springs they would create energy. The second
-//! derivative
+//! where ∂x is that at a fixed ξ. In a plane of symmetry t is the normal of the plane, which does
+//! not turn: ∂T = 0. With the gap there, its motion adds g ∂ξ to the gradient of the integral, with
+//! a negative sign where the primary begins. Without it, forces would have no potential where
+//! bodies overhang, and with springs they would create energy. The second derivative
 //!
 //! ```text
 //! ∂ξ ⊗ ∇g + ∇g ⊗ ∂ξ + g' ∂ξ ⊗ ∂ξ + g ∂²ξ,    g' = ∇_x g·x',
@@ -39,7 +39,11 @@ pub(super) struct Border {
 
 /// The end of a facet of the primary.
 pub(super) struct End<'a> {
-    pub(super) at: FacetPoint,
+    pub(super) place: Vector<2>,
+    /// Unit normal of the border: the tangent t of the facet, or the normal of a plane of symmetry.
+    pub(super) along: Vector<2>,
+    /// 1/|T|; zero in a plane of symmetry.
+    pub(super) turns: f64,
     pub(super) shape: &'a LineShape,
     pub(super) nodes: usize,
 }
@@ -54,12 +58,12 @@ impl Border {
         jumps: [f64; 2],
         of_jump: [Vector<2>; MOST],
     ) -> Option<Self> {
-        let along = end.at.tangent * end.at.measure.recip();
+        let along = end.along;
         let rate = point.tangent.dot(&along);
         if rate == 0.0 {
             return None;
         }
-        let across = (point.position - end.at.position) * end.at.measure.recip();
+        let across = (point.position - end.place) * end.turns;
         let mut slopes = [Vector::ZERO; MOST];
         slopes[0] = along * -rate.recip();
         for node in 0..end.nodes {

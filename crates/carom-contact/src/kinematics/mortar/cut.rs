@@ -9,10 +9,10 @@
 //! ```
 //!
 //! on which both have the same gap, and at an end or a kink of more than 30° the normal (x − y_v)·t
-//! = 0. Behind an end in a plane of symmetry the mirror image of the facet follows. What lies
-//! beyond another end has no partner and does not count. The gap is continuous at the joints, so
-//! that the gradient of the weighted gap need not account for their motion, while its derivative
-//! does (`joint.rs`); the motion of an end is in `border.rs`.
+//! = 0. At an end in a plane of symmetry, behind which the mirror image of the facet follows, it is
+//! the plane. Points beyond an end have no partner and do not count. The gap is continuous at the
+//! joints, so that the gradient of the weighted gap need not account for their motion, while its
+//! derivative does (`joint.rs`); the motion of an end is in `border.rs`.
 
 use carom_algebra::Vector;
 
@@ -43,8 +43,10 @@ pub(super) struct Region {
     start: [Vector<2>; 2],
     /// A line at its end: a point on it, and the direction away from the facet.
     end: [Vector<2>; 2],
-    /// Whether nothing continues it smoothly, at the start and at the end.
+    /// Whether no other facet continues it smoothly, at the start and at the end.
     is_free: [bool; 2],
+    /// Normals of the planes of symmetry in which it starts or ends without a corner.
+    planes: [Option<Vector<2>>; 2],
     normal: Vector<2>,
     length: f64,
 }
@@ -63,10 +65,22 @@ impl Region {
             (continues && primary.is_blunt(one, other, y)).then(|| unit(tangents()[usize::from(forward)]))
         };
         let [before, after] = [false, true].map(continued);
+        let lines = [
+            before.unwrap_or(Vector::ZERO) + unit(first.tangent),
+            unit(last.tangent) + after.unwrap_or(Vector::ZERO),
+        ];
+        let is_mirrored =
+            |forward: bool| primary.neighbour(facet, forward).is_some_and(|next| primary.is_mirror(next));
+        let of_plane = |forward: bool| {
+            let is_smooth = [before, after][usize::from(forward)].is_some();
+            (is_smooth && is_mirrored(forward)).then(|| unit(lines[usize::from(forward)]))
+        };
+        let planes = [false, true].map(of_plane);
         Self {
-            start: [first.position, before.unwrap_or(Vector::ZERO) + unit(first.tangent)],
-            end: [last.position, unit(last.tangent) + after.unwrap_or(Vector::ZERO)],
-            is_free: [before.is_none(), after.is_none()],
+            start: [first.position, lines[0]],
+            end: [last.position, lines[1]],
+            is_free: [before.is_none() || planes[0].is_some(), after.is_none() || planes[1].is_some()],
+            planes,
             normal: middle.normal,
             length: (last.position - first.position).norm(),
         }
@@ -153,6 +167,8 @@ pub(super) struct Crossing {
     /// The facet that ends there, and its coordinate, −1 or 1.
     pub(super) facet: usize,
     pub(super) eta: f64,
+    /// Normal of the plane of symmetry in which it ends.
+    pub(super) plane: Option<Vector<2>>,
     /// Closest points of the primary for the secondary side before and after this place.
     pub(super) sides: [Option<Opposed>; 2],
 }
@@ -322,7 +338,8 @@ impl Opposites<'_> {
                 let facets = sides.map(|side| side.map(|opposed| opposed.facet));
                 if facets[0] != facets[1] {
                     let eta = if is_start { -1.0 } else { 1.0 };
-                    borders.push(Crossing { xi, facet: part.facet, eta, sides });
+                    let plane = part.region.planes[usize::from(!is_start)];
+                    borders.push(Crossing { xi, facet: part.facet, eta, plane, sides });
                 }
             }
         }

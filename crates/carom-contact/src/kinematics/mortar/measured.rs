@@ -98,7 +98,11 @@ impl Mortar {
             return None;
         }
         let facet = primary.surface.facet(at.facet);
-        let end = End { at: facet.at(y, at.eta), shape: &facet.shape.at(at.eta), nodes: facet.nodes.len() };
+        let FacetPoint { position, tangent, measure, .. } = facet.at(y, at.eta);
+        let along = at.plane.unwrap_or(tangent * measure.recip());
+        let turns = if at.plane.is_some() { 0.0 } else { measure.recip() };
+        let shape = &facet.shape.at(at.eta);
+        let end = End { place: position, along, turns, shape, nodes: facet.nodes.len() };
         let border = Border::new(&own.at(y, at.xi), &end, jumps, of_jump)?;
         let at = Opposed { xi: at.xi, weight: 0.0, facet: at.facet, eta: at.eta };
         Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None })

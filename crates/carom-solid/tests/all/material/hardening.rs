@@ -16,7 +16,8 @@ fn laws() -> [Hardening; 3] {
 fn flow_ends_on_the_yield_stress() {
     for law in laws() {
         for alpha in [0.0, 0.05, 0.1, 0.29, 1.0] {
-            for excess in [1e-12, 1e-3, 0.4, 3.0, 40.0] {
+            assert_eq!(law.flow(alpha, 0.0, 7.0).strain, 0.0, "{law:?} {alpha}");
+            for excess in [0.0, 1e-12, 1e-3, 0.4, 3.0, 40.0] {
                 let start = law.at(alpha);
                 let flow = law.flow(alpha, excess, 7.0);
                 let end = law.at(alpha + flow.strain);
