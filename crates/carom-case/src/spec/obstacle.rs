@@ -211,7 +211,11 @@ impl Rigid {
         }
         if let Some(key) = ["velocity", "gravity"].into_iter().find(|key| v.has(key) && !v.has("mass")) {
             let why = "it belongs to an obstacle that is free to move";
-            let help = "add `mass`, or prescribe a `motion`";
+            let help = if v.has("motion") {
+                "leave it out: the motion says where the obstacle is at every time"
+            } else {
+                "add `mass`, or prescribe a `motion`"
+            };
             return v.wrong_key(key, format!("`{key}` needs `mass`"), why, help);
         }
         if v.has("mass") {

@@ -31,7 +31,7 @@ mod yeoh;
 
 pub use hardening::{Hardening, Table};
 pub use hencky::Hencky;
-pub use hyperelastic::{AtPoints, InLanes, Material};
+pub use hyperelastic::{AtPoints, FourAfter, InLanes, Material};
 pub use isochoric::{Isochoric, OfInvariants, Slopes};
 pub use j2::J2;
 pub use kinematics::NotPositive;

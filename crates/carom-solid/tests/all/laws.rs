@@ -1,7 +1,7 @@
 //! Every law in every dimension: energy → stress → tangent by differences, objectivity, the
 //! undeformed state, small displacements, J ≤ 0.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Four, Mat, Vector};
 use carom_solid::material::{
     Hencky, Isochoric, LinearElastic, Material, MooneyRivlin, NeoHookean, NotPositive, SaintVenantKirchhoff,
     Yeoh,

@@ -1,6 +1,8 @@
 //! Plasticity of a point: derivatives, objectivity, isochoric flow, plastic work, histories with a
 //! closed form.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use carom_solid::Past;
 use carom_solid::material::{Hardening, Hencky, J2, PlaneStress, Table};
 
@@ -294,4 +296,52 @@ fn large_shear_does_not_oscillate() {
     // γ/√3 less the elastic part.
     let alpha = memory.last().unwrap();
     assert!((alpha / (8.0 / 3.0_f64.sqrt()) - 1.0).abs() < 1e-3, "{alpha}");
+}
+
+/// Four points at once, of which some flow and some do not, are what each of them is by itself: the
+/// same stress, energies and memory, bit by bit.
+#[test]
+fn four_points_at_once_are_single_points() {
+    fn compared<const D: usize>(law: &J2, x: &[f64], mixed: &AtomicUsize) {
+        let path = path::<D>(x);
+        let scales = [1.0, 0.02, 0.5, 0.1];
+        let size = <J2 as Material<D>>::MEMORY;
+        let memory: Vec<f64> =
+            scales.iter().flat_map(|scale| after(law, &[path[0] * *scale, path[1] * *scale])).collect();
+        let ends = scales.map(|scale| path[3] * scale);
+        let mut lanes = Mat::<D, Four>::ZERO;
+        for i in 0..D {
+            for j in 0..D {
+                lanes.0[i][j] = Four(ends.map(|h| h.0[i][j]));
+            }
+        }
+        let mut remembered = vec![0.0; 4 * size];
+        let past = Past { memory: &memory, dt: 1.0 };
+        let four = law.after_four(&lanes, &past, &mut remembered).unwrap().unwrap();
+        for (l, h) in ends.iter().enumerate() {
+            let of_point = l * size..(l + 1) * size;
+            let past = Past { memory: &memory[of_point.clone()], dt: 1.0 };
+            let point = Material::<D>::after(law, h, &past).unwrap();
+            let mut own = past.memory.to_vec();
+            law.remember(&point, &mut own);
+            assert_eq!(own, remembered[of_point]);
+            assert_eq!(law.energy(&point), four.stored.0[l]);
+            assert_eq!(law.dissipated(&point), four.dissipated.0[l]);
+            let stress = law.stress(&point);
+            (0..D).for_each(|i| (0..D).for_each(|j| assert_eq!(stress.0[i][j], four.stress.0[i][j].0[l])));
+        }
+        let is_mixed = four.dissipated.0.iter().any(|lost| *lost > 0.0) && four.dissipated.0.contains(&0.0);
+        mixed.fetch_add(usize::from(is_mixed), Ordering::Relaxed);
+    }
+    let mixed = AtomicUsize::new(0);
+    let voce = Hardening::Voce { yield_stress: 0.15, modulus: 0.1, rise: 0.2, rate: 9.0 };
+    let table = Hardening::Table(Table::new(&[[0.0, 0.15], [0.1, 0.3], [0.2, 0.3]]).unwrap());
+    for hardening in [metal().hardening, voce, table] {
+        let law = J2 { elastic: metal().elastic, hardening };
+        lists(64, 36, &|x| {
+            compared::<2>(&law, x, &mixed);
+            compared::<3>(&law, x, &mixed);
+        });
+    }
+    assert!(mixed.load(Ordering::Relaxed) > 100);
 }
