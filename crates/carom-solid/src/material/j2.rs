@@ -155,6 +155,12 @@ impl J2 {
         Ok(self.respond(frame, start, true))
     }
 
+    /// Energy that is dissipated in the step.
+    #[inline(always)]
+    fn lost<const D: usize, T: Real>(&self, p: &Point<D, T>) -> T {
+        T::of(self.hardening.initial()) * p.flow.strain
+    }
+
     /// The point of a frame from what it remembers, with flow or without. Where nothing flows, the
     /// formulas of flow give the elastic response.
     #[inline(always)]
@@ -230,7 +236,7 @@ impl<const D: usize> Material<D> for J2 {
         past: &Past,
         memory: &mut [f64],
     ) -> Result<Option<FourAfter<D>>, NotPositive> {
-        let size = components(D) + 1;
+        let size = <Self as Material<D>>::MEMORY;
         let start = Remembered::read(|k| four_of(past.memory, size, k));
         let point = self.kinematics(h, start)?;
         if !memory.is_empty() {
@@ -243,11 +249,7 @@ impl<const D: usize> Material<D> for J2 {
                 },
             );
         }
-        Ok(Some(FourAfter {
-            stored: point.stored,
-            dissipated: Four::of(self.hardening.initial()) * point.flow.strain,
-            stress: point.of.stress(),
-        }))
+        Ok(Some(FourAfter { stored: point.stored, dissipated: self.lost(&point), stress: point.of.stress() }))
     }
 
     #[inline(always)]
@@ -258,7 +260,7 @@ impl<const D: usize> Material<D> for J2 {
         past: &Past,
         _: usize,
     ) -> Result<InLanes<D>, NotPositive> {
-        let size = components(D) + 1;
+        let size = <Self as Material<D>>::MEMORY;
         let start = Remembered::read(|k| four_of(past.memory, size, k));
         let point = self.kinematics(&four(h), start)?;
         Ok(lanes(&point.of.change(&four(dh))))
@@ -266,7 +268,7 @@ impl<const D: usize> Material<D> for J2 {
 
     #[inline(always)]
     fn dissipated(&self, p: &Point<D>) -> f64 {
-        self.hardening.initial() * p.flow.strain
+        self.lost(p)
     }
 
     fn plastic_strain(&self, memory: &[f64]) -> f64 {
