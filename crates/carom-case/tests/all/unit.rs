@@ -17,7 +17,7 @@ fn numbers_are_converted_to_the_units_of_the_case() {
         let advice = labels.advice("key", None, text).unwrap();
         assert!(advice.starts_with(&format!("write `key = {number}`: the number alone, in ")), "{advice}");
     }
-    // Of tonnes no prefix is known, and a pressure is made of several units.
+    // Tonnes have no prefix that is known, and a pressure is made of several units.
     for text in ["2 kg", "1 MPa", "20 °", "3 m/s"] {
         let advice = labels.advice("key", None, text).unwrap();
         let words =

@@ -51,7 +51,7 @@ fn is_doubtful(contact: &Contact, depth: f64, length: f64) -> bool {
 /// Penetration at a state.
 #[derive(Debug, Default)]
 pub struct Measured {
-    /// Of all contacts.
+    /// Largest depth over all contacts.
     pub depths: Depths,
     /// Doubtful contacts, ascending.
     pub doubtful: Vec<usize>,

@@ -57,30 +57,27 @@ impl Region {
         let of = primary.facet(facet);
         let [first, middle, last] = [-1.0, 0.0, 1.0].map(|xi| of.at(y, xi));
         let unit = |tangent: Vector<2>| tangent * tangent.norm().recip();
-        let continued = |forward: bool| {
+        let in_order = |next: usize, forward: bool| if forward { [facet, next] } else { [next, facet] };
+        let continuing = |forward: bool| {
             let next = primary.neighbour(facet, forward)?;
-            let [one, other] = if forward { [facet, next] } else { [next, facet] };
-            let continues = primary.is_of_side(next) || primary.is_mirror(next);
-            let tangents = || primary.tangents_at_joint(one, other, y);
-            (continues && primary.is_blunt(one, other, y)).then(|| unit(tangents()[usize::from(forward)]))
+            let [one, other] = in_order(next, forward);
+            let is_known = primary.is_of_side(next) || primary.is_mirror(next);
+            (is_known && primary.is_blunt(one, other, y)).then_some(next)
         };
-        let [before, after] = [false, true].map(continued);
-        let lines = [
-            before.unwrap_or(Vector::ZERO) + unit(first.tangent),
-            unit(last.tangent) + after.unwrap_or(Vector::ZERO),
-        ];
-        let is_mirrored =
-            |forward: bool| primary.neighbour(facet, forward).is_some_and(|next| primary.is_mirror(next));
-        let of_plane = |forward: bool| {
-            let is_smooth = [before, after][usize::from(forward)].is_some();
-            (is_smooth && is_mirrored(forward)).then(|| unit(lines[usize::from(forward)]))
+        let beyond = [false, true].map(continuing);
+        let tangent_beyond = |forward: bool| {
+            let next = beyond[usize::from(forward)]?;
+            let [one, other] = in_order(next, forward);
+            Some(unit(primary.tangents_at_joint(one, other, y)[usize::from(forward)]))
         };
-        let planes = [false, true].map(of_plane);
+        let to_start = tangent_beyond(false).unwrap_or(Vector::ZERO) + unit(first.tangent);
+        let to_end = unit(last.tangent) + tangent_beyond(true).unwrap_or(Vector::ZERO);
+        let in_plane = beyond.map(|next| next.is_some_and(|next| primary.is_mirror(next)));
         Self {
-            start: [first.position, lines[0]],
-            end: [last.position, lines[1]],
-            is_free: [before.is_none() || planes[0].is_some(), after.is_none() || planes[1].is_some()],
-            planes,
+            start: [first.position, to_start],
+            end: [last.position, to_end],
+            is_free: [0, 1].map(|end| beyond[end].is_none() || in_plane[end]),
+            planes: [0, 1].map(|end| in_plane[end].then(|| unit([to_start, to_end][end]))),
             normal: middle.normal,
             length: (last.position - first.position).norm(),
         }

@@ -63,7 +63,7 @@ fn a_node_that_leaves_where_it_entered_may_be_as_deep_as_a_contact_allows() {
 
 #[test]
 fn thin_walls_of_a_hollow_body_are_not_missed() {
-    // Of the way from the first entry, x = 0, to the last exit, x = 2.06, 94 % are outside.
+    // The way from the first entry, x = 0, to the last exit, x = 2.06, is outside for 94 %.
     let channel = [
         [0.0, 0.0],
         [2.06, 0.0],
@@ -108,7 +108,7 @@ fn a_node_with_a_pair_that_enters_elsewhere_has_another_one() {
 
 #[test]
 fn a_node_that_starts_or_ends_at_a_depth_that_it_may_have_is_not_forgotten() {
-    // It may be 0.02 deep, is 0.015 deep at one end of its way, and 0.05 deep on it.
+    // The node may be 0.02 deep, is 0.015 deep at one end of its way, and 0.05 deep on it.
     let plate = [[-1.0, -0.1], [0.0, -0.1], [1.0, -0.1], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
     let facet = |k: usize| vec![k, (k + 1) % 6];
     let surface = Surface::new(FacetShape::L2, &[facet(3), facet(4)], &[1.0; 2]);

@@ -63,7 +63,7 @@ fn a_node_that_stays_outside_or_inside_or_cuts_off_a_corner_is_not() {
 
 #[test]
 fn thin_walls_of_a_hollow_body_are_not_missed() {
-    // Of the way from the first entry, x = 0, to the last exit, x = 2.06, 94 % are outside.
+    // The way from the first entry, x = 0, to the last exit, x = 2.06, is outside for 94 %.
     let channel = [
         [0.0, 0.0],
         [2.06, 0.0],
