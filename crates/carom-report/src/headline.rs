@@ -43,14 +43,19 @@ struct Facts<'a> {
 /// of a free motion.
 pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let facts = Facts { run, scene, metrics: metrics_of(run), sizes: Sizes::of(run) };
-    let impact =
-        || [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), facts.energy_lost()];
+    let is_driven = run.is_driven();
+    let impact = || {
+        let energy = if is_driven { facts.work() } else { facts.energy_lost() };
+        [facts.rebound(), facts.peak_force(), facts.mean_force(), facts.duration(), energy]
+    };
     let outside = || [facts.largest_stress(), facts.peak_force(), facts.work(), facts.displacement()];
     let inside =
         || [facts.peak_force(), facts.work(), facts.friction(), facts.plastic(), facts.largest_stress()];
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
-    let is_impact = !run.is_static() && run.has_contact() && !run.is_driven();
-    let no_rebound = if is_impact { metrics::no_rebound(run) } else { None };
+    let no_rebound = metrics::no_rebound(run);
+    // A body that is driven strikes where it rebounds, and is pressed where it does not.
+    let is_impact = !run.is_static() && run.has_contact() && (!is_driven || no_rebound.is_none());
+    let no_rebound = no_rebound.filter(|_| is_impact);
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()
     } else if is_impact {
@@ -58,7 +63,7 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
             .into_iter()
             .chain([facts.largest_stress(), facts.friction(), facts.plastic(), facts.displacement()])
             .collect()
-    } else if run.is_driven() {
+    } else if is_driven {
         facts.reactions().into_iter().chain(inside()).chain([facts.displacement()]).collect()
     } else {
         free().into_iter().chain(facts.reactions()).collect()

@@ -72,7 +72,7 @@ fn is_meaningful(run: &Recorded, metric: &Metric) -> bool {
     let has_ended = metrics::first_episode(&run.history).is_none_or(|episode| episode.end.is_some());
     let of_turning = ["turning_time", "apex", "apex_time"].contains(&name);
     let has_turned =
-        || metrics::all(&run.history).iter().any(|m| m.name == "turning_time" && m.value.is_some());
+        || metrics::of_rebound(run).iter().any(|m| m.name == "turning_time" && m.value.is_some());
     !of_turning || (has_ended && has_turned())
 }
 

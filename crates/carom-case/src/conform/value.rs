@@ -283,6 +283,11 @@ impl Check {
             what = format!("`{}` must be a list of tables, not a single table", key.name);
         }
         let help = match key.kind {
+            Kind::Variant(variants)
+                if let Some(word) = node.text().filter(|word| variants().table(word).is_some()) =>
+            {
+                format!("write `{} = {{ {} = \"{word}\" }}`", key.name, variants().tag)
+            }
             Kind::Tables(table) if key.example.is_empty() => {
                 format!("write its header in double brackets: {}", table.name)
             }

@@ -1,9 +1,10 @@
-//! The impact of the first episode: the striker, what it strikes, and Newton's coefficient of
-//! restitution.
+//! The impact of the first episode: the striker, what it strikes, Newton's coefficient of
+//! restitution, and the time at which approach turns into separation.
 //!
 //! ```text
 //! e = −(w⁺·n)/(w⁻·n)        w = v − v_other, before the episode and after it
 //! n = Σ −λ n_c / |Σ −λ n_c| over the rows of contact.csv of the striker in the episode
+//! turning_time              w(t)·n = 0
 //! ```
 //!
 //! (I. Newton, *Principia*, 1687, scholium to the laws of motion.) n is the direction of the normal
@@ -14,7 +15,7 @@
 use carom_formula::Formula;
 
 use super::episode::{Episode, first_episode};
-use super::given::vector;
+use super::given::{Given, vector};
 use super::striker::striker;
 use crate::{History, Run, body_of};
 
@@ -59,25 +60,47 @@ impl<'a> Impact<'a> {
         if is_tied(striker) || others.iter().flatten().any(|other| is_tied(other)) {
             return Err("a tied body moves with another one");
         }
-        let along = |row: usize| {
-            let of_striker = velocity(run, Some(striker), row)?;
-            let others: Option<Vec<_>> = others.iter().map(|other| velocity(run, *other, row)).collect();
-            let others = others?;
-            let first = others.first()?;
-            let relative = of_striker.iter().zip(first).map(|(v, other)| v - other);
-            let alike = others.iter().all(|other| other == first);
-            alike.then(|| relative.zip(normal).map(|(w, n)| w * n).sum::<f64>())
-        };
-        let approach = -along(before)
+        let mut impact = Self { striker, others, normal, approach: 0.0, separation: None };
+        impact.approach = -impact
+            .relative(run, before)
             .ok_or("several bodies of different velocities are struck, or that of a support is not known")?;
-        let separation = episode.end.and_then(along);
-        let parties = others.iter().copied().chain([Some(striker)]);
+        impact.separation = episode.end.and_then(|end| impact.relative(run, end));
+        let parties = impact.others.iter().copied().chain([Some(striker)]);
         let fastest = parties.filter_map(|party| velocity(run, party, before)).flatten();
         let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
-        let is_approach = approach > AT_REST * fastest;
-        let impact = Self { striker, others, normal, approach, separation };
+        let is_approach = impact.approach > AT_REST * fastest;
         if is_approach { Ok(impact) } else { Err("the bodies did not approach each other before contact") }
     }
+
+    /// w·n in a row; none if parties of different velocities are struck.
+    fn relative(&self, run: &Run, row: usize) -> Option<f64> {
+        let of_striker = velocity(run, Some(self.striker), row)?;
+        let others: Option<Vec<_>> = self.others.iter().map(|other| velocity(run, *other, row)).collect();
+        let others = others?;
+        let first = others.first()?;
+        let relative = of_striker.iter().zip(first).map(|(v, other)| v - other);
+        let alike = others.iter().all(|other| other == first);
+        alike.then(|| relative.zip(self.normal).map(|(w, n)| w * n).sum())
+    }
+}
+
+/// Time in the first episode at which the striker ceases to approach what it strikes, linearly
+/// interpolated between rows.
+pub(super) fn turning_time(given: &Given) -> Option<f64> {
+    let run = given.run?;
+    let impact = Impact::first(run).ok()?;
+    let rows = given.rows()?;
+    let mut before = (given.time(rows.start), -impact.approach);
+    for row in rows.skip(1) {
+        let (earlier, approaching) = before;
+        let separating = impact.relative(run, row)?;
+        if separating >= 0.0 {
+            let share = approaching / (approaching - separating);
+            return Some(earlier + (given.time(row) - earlier) * share);
+        }
+        before = (given.time(row), separating);
+    }
+    None
 }
 
 /// Newton's coefficient of restitution.

@@ -5,18 +5,28 @@ use super::cost::cost;
 use super::definition::{Definition, OWN, d};
 use super::given::Given;
 use super::pressure;
-use super::rebound::restitution;
+use super::rebound;
 use crate::units::Unit;
 
 /// Metrics of the bodies of the first episode.
-pub const REBOUND: [Definition; 1] = [d(
-    "restitution",
-    Unit::None,
-    "−(w⁺·n)/(w⁻·n), w = v − v_other, n = Σ −λ n_c",
-    "Newton 1687",
-    "Newton's coefficient of restitution: −(relative velocity after)/(relative velocity before the first episode) of the centres of the striker and of what it strikes, along the normal contact impulse; fixed obstacles are at rest, a tied body has none, and a body moves like its supports along an axis in which they hold it",
-    |g| restitution(g.run?),
-)];
+pub const REBOUND: [Definition; 2] = [
+    d(
+        "turning_time",
+        Unit::Time,
+        "t with w(t)·n = 0, linear between rows",
+        OWN,
+        "time in the first episode at which the striker ceases to approach what it strikes: approach turns into separation, in every frame",
+        rebound::turning_time,
+    ),
+    d(
+        "restitution",
+        Unit::None,
+        "−(w⁺·n)/(w⁻·n), w = v − v_other, n = Σ −λ n_c",
+        "Newton 1687",
+        "Newton's coefficient of restitution: −(relative velocity after)/(relative velocity before the first episode) of the centres of the striker and of what it strikes, along the normal contact impulse; fixed obstacles are at rest, a tied body has none, and a body moves like its supports along an axis in which they hold it",
+        |g| rebound::restitution(g.run?),
+    ),
+];
 
 /// Metrics of the contact pressure at the end of a static run; not defined for dynamic runs.
 pub(crate) const PRESSURE: [Definition; 6] = [

@@ -1,9 +1,8 @@
 //! The striker, which is the body whose centre moves fastest before the first contact, and its
-//! rebound.
+//! apex after it.
 //!
 //! ```text
-//! turning_time   time with v·n = 0 of its centre; n along v⁺ − v⁻ of the first episode
-//! apex           vertex of the parabola through the highest row of its centre and the adjacent rows
+//! apex   vertex of the parabola through the highest row of its centre and the adjacent rows
 //! ```
 
 use super::episode::first_episode;
@@ -11,21 +10,17 @@ use super::given::{Given, norms, vector};
 use super::samples::extreme;
 use crate::History;
 
+/// Excess of a speed over another one, relative to it, that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Name of the body whose centre moves fastest in the row before the first contact (without
-/// contact, in the first row).
+/// contact, in the first row); the first one of those that are equally fast.
 pub fn striker(history: &History) -> Option<&str> {
     let row = first_episode(history).map_or(0, |e| e.start.saturating_sub(1));
     let bodies = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
     let speeds =
         bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
-    speeds.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(body, _)| body)
-}
-
-/// v·(v⁺ − v⁻) of a body's centre in a row, for its velocities in two rows before and after an
-/// episode. Without supports this is the direction of the impulse; on a plane of symmetry the
-/// impulse also has the part that the support takes. It does not depend on which side is secondary.
-fn along(velocity: &[&[f64]], [before, after]: [usize; 2], row: usize) -> f64 {
-    velocity.iter().map(|v| v[row] * (v[after] - v[before])).sum()
+    speeds.reduce(|best, next| if next.1 > best.1 * (1.0 + ROUND_OFF) { next } else { best }).map(|(body, _)| body)
 }
 
 /// Time and height of the apex: the vertex of the parabola through the highest row and the adjacent
@@ -53,17 +48,4 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
         return Some((t[i], top - y[0]));
     }
     Some((t[i] - there / curvature, top - 0.5 * there * there / curvature - y[0]))
-}
-
-/// Time at which the velocity of the striker's centre along its change over the first episode
-/// changes sign, linearly interpolated between rows.
-pub(super) fn turning_time(given: &Given) -> Option<f64> {
-    let history = given.history;
-    let rows = given.rows()?;
-    let velocity = vector(history, &format!("{}.velocity", striker(history)?));
-    let along = |row: usize| along(&velocity, [rows.start, rows.end - 1], row);
-    let before = (rows.start..rows.end - 1).find(|&i| along(i) < 0.0 && along(i + 1) >= 0.0)?;
-    let a = along(before);
-    let b = along(before + 1);
-    Some(given.time(before) + (given.time(before + 1) - given.time(before)) * a / (a - b))
 }

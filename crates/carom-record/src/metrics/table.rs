@@ -6,12 +6,12 @@ use super::column::{column_roughness, peak_of_means};
 use super::definition::{Definition, OWN, TABLES, VARIATION, d};
 use super::given::vector;
 use super::samples::{extreme, peak_mean, roughness};
-use super::striker::{apex, turning_time};
+use super::striker::apex;
 use super::{force, ledger, oscillation};
 use crate::units::Unit;
 
 /// Metrics of a history.
-pub const HISTORY: [Definition; 29] = [
+pub const HISTORY: [Definition; 28] = [
     d(
         "contact_start",
         Unit::Time,
@@ -102,14 +102,6 @@ pub const HISTORY: [Definition; 29] = [
         OWN,
         "activations and releases of contact nodes, the first activations included, divided by the time in contact",
         force::chatter,
-    ),
-    d(
-        "turning_time",
-        Unit::Time,
-        "t with v(t)·n = 0, linear between rows",
-        OWN,
-        "time at which the striker's centre turns back in the first episode",
-        turning_time,
     ),
     d(
         "apex",

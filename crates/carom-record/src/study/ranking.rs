@@ -92,7 +92,7 @@ impl Ranks<'_> {
 
     fn with_window(&self, goal: Goal, window: usize) -> Ranking {
         let Self { manifest, rows, compared, reference } = *self;
-        let apart: Vec<Apart> = self.arms().filter_map(|(arm, _)| self.apart(arm)).collect();
+        let mut apart: Vec<Apart> = self.arms().filter_map(|(arm, _)| self.apart(arm)).collect();
         let judge = Judge { rows, compared, reference };
         let Measured { measure, runs } = match judge.measured(goal, window) {
             Ok(measured) => measured,
@@ -102,6 +102,9 @@ impl Ranks<'_> {
                 return Ranking { goal, measure: Err(why.into()), levels, apart, verdict: Err(reasons) };
             }
         };
+        let unknown = self.arms().filter(|(arm, _)| !apart.iter().any(|apart| apart.arm == *arm));
+        let unknown: Vec<Apart> = unknown.filter_map(|(arm, _)| self.unknown(arm, &runs)).collect();
+        apart.extend(unknown);
         let count = manifest.arms.iter().map(|arm| arm.role.level + 1).max().unwrap_or(0);
         let members = |arm: usize| manifest.runs_of(arm).into_iter().filter_map(|run| runs[run].as_ref());
         let is_better = |arm: usize, other: usize| {
@@ -165,6 +168,13 @@ impl Ranks<'_> {
         let errors = |a: &Ranked, b: &Ranked| a.error.total_cmp(&b.error).then(a.cost.total_cmp(&b.cost));
         ranked.sort_by(|a, b| a.place.cmp(&b.place).then(errors(a, b)).then_with(|| name(a).cmp(name(b))));
         ranked
+    }
+
+    /// An arm that has finished without an error in the measure.
+    fn unknown(&self, arm: usize, runs: &[Option<Errors>]) -> Option<Apart> {
+        let lacks = |run: &usize| self.rows[*run].status == Some(Status::Finished) && runs[*run].is_none();
+        let has_none = self.manifest.runs_of(arm).iter().any(lacks);
+        has_none.then(|| Apart { arm, why: "it lacks a quantity of the measure".to_owned() })
     }
 
     /// Why an arm is set apart, if it is.

@@ -10,7 +10,7 @@ use super::manifest::StudyManifest;
 use super::reference::{Level, Reference};
 use super::trajectory::Trajectory;
 use crate::metrics;
-use crate::{Reason, RecordError, Status};
+use crate::{Reason, RecordError, Run, Status};
 
 /// Impact law of the contact nodes, as a part of the description of a reference: while contact
 /// nodes have mass, the law belongs to the mathematical problem.
@@ -72,6 +72,12 @@ impl StudyManifest {
         Err(why.into())
     }
 
+    /// What a run of the reference is compared in.
+    fn trajectory(&self, run: &Run, striker: Option<&str>) -> Trajectory {
+        let metrics = metrics::of_run_beside(run, &self.overlays);
+        Trajectory::of(run, &metrics).with_center_of(striker)
+    }
+
     /// The reference that arms are compared with.
     ///
     /// # Errors
@@ -87,6 +93,8 @@ impl StudyManifest {
         let arms = self.reference_arms();
         let mut levels = Vec::new();
         let mut averaged = Vec::new();
+        // One body for all runs: which of two that are equally fast is the faster one is round-off.
+        let mut striker: Option<String> = None;
         for &i in &arms {
             let mut members = Vec::new();
             let mut phases = Vec::new();
@@ -94,13 +102,14 @@ impl StudyManifest {
                 let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
                 let record = self.intact(directory, self.run(run))?;
                 if let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) {
+                    striker = striker.or_else(|| metrics::striker(&run.history).map(str::to_owned));
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
                         if self.window.is_none() {
                             window = metrics::window(&run.history);
                         }
                     }
-                    members.push(Trajectory::of(&run, &metrics::of_run_beside(&run, &self.overlays)));
+                    members.push(self.trajectory(&run, striker.as_deref()));
                     if !phases.contains(&phase) {
                         phases.push(phase);
                     }
@@ -119,7 +128,7 @@ impl StudyManifest {
             let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) else {
                 return Ok(None);
             };
-            checks.push(Trajectory::of(&run, &metrics::of_run_beside(&run, &self.overlays)));
+            checks.push(self.trajectory(&run, striker.as_deref()));
         }
         let reference = Reference::of_levels(String::new(), levels).checked(checks);
         let reference = reference.grouped(&self.bodies_of_probes(), &window);

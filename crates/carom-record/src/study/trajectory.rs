@@ -10,8 +10,7 @@ use crate::{History, Run};
 pub struct Trajectory {
     /// Times of the rows.
     pub times: Vec<f64>,
-    /// Columns of probes and of the striker's centre, and [`FORCE`], the magnitude of the contact
-    /// force.
+    /// Columns of probes and of centres of bodies, and [`FORCE`], the magnitude of the contact force.
     pub columns: BTreeMap<String, Vec<f64>>,
     /// Components of the contact force by axis.
     pub forces: BTreeMap<String, Force>,
@@ -33,6 +32,12 @@ pub const FORCE: &str = "contact force";
 /// Axes of vectors.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// The body whose centre a column is.
+fn center_of(column: &str) -> Option<&str> {
+    let (body, quantity) = column.rsplit_once('.')?;
+    quantity.starts_with("center_").then_some(body)
+}
+
 /// Components of the contact force that are recorded with their impulses.
 pub(super) fn forces(history: &History) -> BTreeMap<String, Force> {
     let component = |axis: &&str| {
@@ -47,17 +52,19 @@ impl Trajectory {
     /// Extracts the trajectory from a record.
     pub fn of(run: &Run, metrics: &[Metric]) -> Self {
         let history = &run.history;
-        let mut names: Vec<String> = metrics::probe_columns(run).into_iter().map(str::to_owned).collect();
-        if let Some(striker) = metrics::striker(history) {
-            names.extend(AXES.map(|axis| format!("{striker}.center_{axis}")));
-        }
-        let columns = names.into_iter().filter_map(|name| {
-            let values = history.column(&name)?.to_vec();
-            Some((name, values))
-        });
+        let all = history.columns.iter().map(|column| column.name.as_str());
+        let centers = all.filter(|name| center_of(name).is_some());
+        let names = metrics::probe_columns(run).into_iter().chain(centers);
+        let columns = names.filter_map(|name| Some((name.to_owned(), history.column(name)?.to_vec())));
         let mut columns: BTreeMap<_, _> = columns.collect();
         columns.insert(FORCE.to_owned(), metrics::contact_force(history));
         Self { times: history.times().to_vec(), columns, forces: forces(history), metrics: metrics.to_vec() }
+    }
+
+    /// Without the centres of all bodies but one.
+    pub(super) fn with_center_of(mut self, body: Option<&str>) -> Self {
+        self.columns.retain(|name, _| center_of(name).is_none_or(|owner| Some(owner) == body));
+        self
     }
 
     pub(super) fn value(&self, metric: &str) -> Option<f64> {

@@ -1,7 +1,8 @@
 //! The recommendation that follows from a ranking, with its confidence, or why there is none.
 //!
 //! ```text
-//! accurate      `accuracy` given: e + U ≤ accuracy;   otherwise: the most accurate arm is not better, or by at most 5 %
+//! accurate      `accuracy` given: e + U ≤ accuracy;   otherwise: the error is at most 5 % larger than that of the
+//!               most accurate arm, or at most half larger and not distinguished from it
 //! candidates    accurate, and no arm has a smaller error at no more cost
 //! recommended   of the candidates within 10 % of the lowest cost, the one with the smallest error
 //! ```
@@ -126,7 +127,10 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let required = field.required();
     let is_accurate = |r: &&Ranked| match required {
         Some(accuracy) => r.interval[1] <= accuracy,
-        None => r.error <= EQUAL_ERROR * best.error || !(field.is_better)(best.arm, r.arm),
+        None => {
+            let is_alike = r.error <= CLEAR * best.error && !(field.is_better)(best.arm, r.arm);
+            is_alike || r.error <= EQUAL_ERROR * best.error
+        }
     };
     let candidates = || all().filter(|r| is_accurate(r) && field.is_on_front(r));
     let Some(cheapest) = field.least(candidates(), |r| r.cost) else {
@@ -142,7 +146,7 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let chosen = field.least(affordable, |r| r.error).unwrap_or(cheapest);
     let mut alike: Vec<&str> = field
         .rivals(chosen)
-        .filter(|r| !(field.is_better)(chosen.arm, r.arm) && is_accurate(r))
+        .filter(|r| !(field.is_better)(chosen.arm, r.arm) && (required.is_none() || is_accurate(r)))
         .map(|r| field.name(r))
         .collect();
     alike.sort_unstable();
@@ -164,7 +168,7 @@ fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
         }
         None if best.arm == chosen.arm => "no arm has a smaller error".to_owned(),
         None => format!(
-            "least cost of the arms that are not distinguished from the most accurate one, {}: {}",
+            "least cost of the arms that are at most half less accurate than the most accurate one, and not distinguished from it, {}: {}",
             field.name(best),
             known(best)
         ),

@@ -49,8 +49,12 @@ pub(super) fn moves(
                     problems.push(Problem::new(
                         path.clone(),
                         format!("a node of {named} is moved along {} and also {with}", AXES[*axis]),
-                        format!("the node at {} is on two supports", coordinates(&place_of(parts, node))),
-                        "remove one of the sides, or give both the same motion",
+                        format!(
+                            "the node at {} has two conditions along {}",
+                            coordinates(&place_of(parts, node)),
+                            AXES[*axis]
+                        ),
+                        "fix and move different directions, remove one of the sides, or give both the same motion",
                     ));
                     break;
                 }

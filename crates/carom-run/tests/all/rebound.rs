@@ -46,7 +46,11 @@ pub(super) fn record(text: &str, sets: &[&str]) -> Run {
 }
 
 fn restitution(run: &Run) -> Option<f64> {
-    of_rebound(run).into_iter().find(|metric| metric.name == "restitution").unwrap().value
+    value(run, "restitution")
+}
+
+fn value(run: &Run, name: &str) -> Option<f64> {
+    of_rebound(run).into_iter().find(|metric| metric.name == name).unwrap().value
 }
 
 fn of(text: &str, sets: &[&str]) -> f64 {
@@ -91,6 +95,23 @@ fn the_same_in_every_frame() {
     let motion = wall(", motion = { x = \"-0.03*t\" }");
     let moving = of(BARS, &[&motion, away, "body.short.velocity=[-0.02]"]);
     assert!((moving - fixed).abs() < 1e-9 && (fixed - 1.0).abs() < 0.03, "{moving} {fixed}");
+}
+
+/// The force between two bars of one impedance, ρcv/2, lasts from t = 1, and stops the approach of
+/// their centres after v/(ρcv/2 (1/m₁ + 1/m₂)) = 4/3, in every frame; that of a rigid wall, ρcv,
+/// after 1.
+#[test]
+fn the_time_at_which_approach_turns_into_separation() {
+    let turning = |sets: &[&str]| value(&record(BARS, sets), "turning_time").unwrap();
+    let free = turning(&[]);
+    assert!((free - (1.0 + 4.0 / 3.0)).abs() < 0.01, "{free}");
+    let moving = turning(&["body.short.velocity=[-0.02]", "body.long.velocity=[-0.03]"]);
+    assert!((moving - free).abs() < 1e-9, "{moving} {free}");
+    let wall =
+        "contact.hit.primary={ plane = { point = [0.01], normal = [-1.0] }, motion = { x = \"-0.03*t\" } }";
+    let away = "body.long.mesh={ shape = \"interval\", min = 5.0, max = 7.0, cells = 10 }";
+    let moving = turning(&[wall, away, "body.short.velocity=[-0.02]"]);
+    assert!((moving - 2.0).abs() < 0.01, "{moving}");
 }
 
 /// With a motion that depends on the place, or where the striker strikes two bodies of different

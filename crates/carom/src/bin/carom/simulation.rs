@@ -11,11 +11,12 @@ use serde::Serialize;
 use crate::exit::Failure;
 
 /// Metrics of the summary, where they are defined; all are in `metrics.json`.
-const SHOWN: [&str; 7] = [
+const SHOWN: [&str; 8] = [
     "contact_duration",
     "peak_mean_force",
     "restitution",
     "energy_lost",
+    "permanent_set",
     "penetration",
     "pressure_max",
     "traction_max",
@@ -126,11 +127,18 @@ pub(crate) fn conclude(
         extremes: extremes(&run),
         profile: if options.profile { profile(&run.manifest) } else { Vec::new() },
         report,
-        remarks: done.remarks.into_iter().chain(projected(&run)).collect(),
+        remarks: done.remarks.into_iter().chain(no_rebound(&run)).chain(projected(&run)).collect(),
         sizes: Some(Sizes::of(&run)),
         directory: done.directory,
         expectations: run.manifest.expectations,
     })
+}
+
+/// Why a run in contact has no coefficient of restitution.
+fn no_rebound(run: &Run) -> Option<String> {
+    let has_contact = !run.manifest.facts.is_static && metrics::first_episode(&run.history).is_some();
+    let why = metrics::no_rebound(run).filter(|_| has_contact)?;
+    Some(format!("no restitution: {why}"))
 }
 
 /// A remark on stresses of probes in bodies that yield.

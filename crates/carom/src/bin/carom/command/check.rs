@@ -4,8 +4,8 @@
 use std::path::{Path, PathBuf};
 
 use carom::case::{
-    Case, Document, FileMesh, FormulaSpec, LoadKind, LoadSpec, MeshSpec, PlaceSpec, PrimarySpec, SchemeSpec,
-    SupportSpec, SurfaceSpec, gibibytes,
+    Case, ContactSpec, Document, Enforcement, FileMesh, FormulaSpec, LoadKind, LoadSpec, MaterialSpec,
+    MeshSpec, ObstacleMotion, PlaceSpec, PrimarySpec, SchemeSpec, SupportSpec, SurfaceSpec, gibibytes,
 };
 use carom::model::Model;
 use carom::stability::{SAFETY, stable_step};
@@ -67,6 +67,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 #[derive(Serialize)]
 struct Facts {
     bodies: Vec<BodyFacts>,
+    /// Number of tied nodes, by tie.
+    tied: Vec<usize>,
     /// Steps in which a pressure wave crosses the smallest body; none in statics.
     transit_steps: Option<f64>,
     /// 2/ω_max, for explicit schemes.
@@ -105,6 +107,7 @@ impl Facts {
         let stable = case.time.scheme.is_explicit().then(|| stable_step(model)).flatten();
         Self {
             bodies: model.parts.iter().take(case.bodies.len()).map(body).collect(),
+            tied: model.ties.iter().map(|tie| tie.tied.iter().map(Vec::len).sum()).collect(),
             transit_steps: carom::crossing(case, model).map(|time| time / case.time.step),
             stable_step: stable.map(|stable| stable.power),
         }
@@ -212,15 +215,12 @@ fn table(case: &Case, facts: &Facts, warnings: &[Warning]) -> String {
         lines.push(named("load", load.name.as_deref(), &load_text(load)));
     }
     for contact in &case.contacts {
-        let primary = primary_text(case, &contact.primary);
-        lines.push(named(
-            "contact",
-            Some(&contact.name),
-            &format!("{} against {primary}", contact.secondary),
-        ));
+        lines.push(named("contact", Some(&contact.name), &contact_text(case, contact)));
     }
-    for tie in &case.ties {
-        lines.push(named("tie", Some(&tie.name), &format!("{} to {}", tie.secondary, tie.primary)));
+    for (tie, tied) in case.ties.iter().zip(&facts.tied) {
+        let nodes = several(*tied, "node");
+        let what = format!("{} to {}: {nodes}, {}", tie.secondary, tie.primary, word(&tie.method));
+        lines.push(named("tie", Some(&tie.name), &what));
     }
     for probe in &case.probes {
         lines.push(named("probe", Some(&probe.name), &format!("at {:?} in {}", probe.at, probe.body)));
@@ -245,7 +245,8 @@ fn more(text: &str) -> String {
 fn bodies(case: &Case, facts: &Facts) -> Vec<String> {
     let mut lines = Vec::new();
     for (body, facts) in case.bodies.iter().zip(&facts.bodies) {
-        let materials = body.material_names().join(" and ");
+        let materials =
+            case.materials_of(body).into_iter().map(material_text).collect::<Vec<_>>().join(" and ");
         let what = format!("{:?} of {materials}: {}", body.element, counted(facts));
         lines.push(named("body", Some(&body.name), &what));
         // In the plane every built-in cell is well shaped.
@@ -264,6 +265,11 @@ fn bodies(case: &Case, facts: &Facts) -> Vec<String> {
     lines
 }
 
+fn material_text(material: &MaterialSpec) -> String {
+    let yields = if material.plastic.is_some() { " (yields)" } else { "" };
+    format!("{}{yields}", material.name)
+}
+
 fn support_text(support: &SupportSpec) -> String {
     let axes = support.fix.iter().map(|axis| AXES[*axis]);
     let fixed = axes.chain(support.normal.then_some("their normals")).collect::<Vec<_>>().join(", ");
@@ -271,6 +277,29 @@ fn support_text(support: &SupportSpec) -> String {
     let moved = support.moves.iter().map(|(axis, u)| format!("moved along {} by {u}", AXES[*axis]));
     let how = fixed.into_iter().chain(moved).collect::<Vec<_>>().join(", ");
     format!("{} {how}", support.on.join(", "))
+}
+
+/// Sides, motion, method and friction.
+fn contact_text(case: &Case, contact: &ContactSpec) -> String {
+    let primary = primary_text(case, &contact.primary);
+    let motion = match &contact.motion {
+        ObstacleMotion::Fixed => "",
+        ObstacleMotion::Prescribed { .. } => " that moves",
+        ObstacleMotion::Free { .. } => " that is free",
+    };
+    let enforcement = contact.enforcement != Enforcement::Multiplier;
+    let friction = &contact.friction;
+    let mut how = vec![word(&contact.method)];
+    how.extend(enforcement.then(|| word(&contact.enforcement)));
+    how.extend(friction.mu.as_ref().filter(|_| friction.exists()).map(|mu| format!("mu = {mu}")));
+    how.extend(friction.shear.map(|shear| format!("shear = {}", short(shear))));
+    format!("{} against {primary}{motion}: {}", contact.secondary, how.join(", "))
+}
+
+/// The word of a choice in a case file.
+fn word(choice: &impl Serialize) -> String {
+    let json = serde_json::to_value(choice).unwrap_or_default();
+    json.as_str().unwrap_or_default().to_owned()
 }
 
 fn primary_text(case: &Case, primary: &PrimarySpec) -> String {
