@@ -155,6 +155,13 @@ impl<const D: usize, T: Real> Mat<D, T> {
         c
     }
 
+    /// Inverse matrix; its entries are not finite if the determinant is zero.
+    #[inline(always)]
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        self.cofactor().transposed() * (T::of(1.0) / self.det())
+    }
+
     /// Determinant of the matrix.
     #[inline(always)]
     pub fn det(&self) -> T {
@@ -168,12 +175,6 @@ impl<const D: usize> Mat<D> {
     #[inline(always)]
     pub fn apply(&self, v: &Vector<D>) -> Vector<D> {
         Vector::of(|i| product(&self.0[i], |j| v.0[j]))
-    }
-
-    /// Inverse matrix; its entries are not finite if the determinant is zero.
-    #[inline(always)]
-    pub fn inverse(&self) -> Self {
-        self.cofactor().transposed() * (1.0 / self.det())
     }
 }
 

@@ -55,29 +55,30 @@ const UNEVEN: f64 = 4.0;
 /// interval of contact, openings shorter than that bridged.
 ///
 /// # Errors
-/// Contact never ends, or its intervals are too different for one window.
+/// Contact never ends, the last interval is longer than those before it and does not end, or the
+/// intervals are too different for one window.
 pub fn window(history: &History) -> Result<f64, Reason> {
     let times = history.times();
-    let closed = |bridge: f64| {
-        let found = episodes(history, bridge).into_iter();
-        found.filter_map(|episode| Some(times[episode.end?] - times[episode.start])).collect::<Vec<f64>>()
-    };
+    let last = times.len().saturating_sub(1);
+    let length = |episode: &Episode| times[episode.end.unwrap_or(last)] - times[episode.start];
     let longest = |lengths: &[f64]| lengths.iter().copied().fold(0.0, f64::max);
-    let first = longest(&closed(default_bridge(history))) / WINDOWS;
-    let lengths = closed(first);
+    let closed = |found: &[Episode]| -> Vec<f64> {
+        found.iter().filter(|episode| episode.end.is_some()).map(length).collect()
+    };
+    let bridge = longest(&closed(&episodes(history, default_bridge(history)))) / WINDOWS;
+    let found = episodes(history, bridge);
+    let lengths = closed(&found);
     let window = longest(&lengths) / WINDOWS;
-    if window <= 0.0 {
-        return Err(
-            "no contact of the reference begins and ends; give `window`, the time to average over".into()
-        );
-    }
-    if lengths.iter().any(|length| *length > 0.0 && UNEVEN * length < WINDOWS * window) {
-        return Err(
-            "intervals of contact of the reference differ by 4 : 1; give `window`, the time to average over"
-                .into(),
-        );
-    }
-    Ok(window)
+    let why = if window <= 0.0 {
+        "no contact of the reference begins and ends"
+    } else if found.iter().any(|episode| episode.end.is_none() && length(episode) > longest(&lengths)) {
+        "the longest contact of the reference lasts to its end"
+    } else if lengths.iter().any(|length| *length > 0.0 && UNEVEN * length < WINDOWS * window) {
+        "intervals of contact of the reference differ by 4 : 1"
+    } else {
+        return Ok(window);
+    };
+    Err(format!("{why}; give `window`, the time to average over").into())
 }
 
 /// The value of `bridge` for the named metrics: 2 % of the recorded time.

@@ -20,7 +20,9 @@ pub fn striker(history: &History) -> Option<&str> {
     let bodies = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
     let speeds =
         bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
-    speeds.reduce(|best, next| if next.1 > best.1 * (1.0 + ROUND_OFF) { next } else { best }).map(|(body, _)| body)
+    speeds
+        .reduce(|best, next| if next.1 > best.1 * (1.0 + ROUND_OFF) { next } else { best })
+        .map(|(body, _)| body)
 }
 
 /// Time and height of the apex: the vertex of the parabola through the highest row and the adjacent

@@ -65,6 +65,7 @@ impl Hencky {
 }
 
 impl<const D: usize> Material<D> for Hencky {
+    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -78,9 +79,9 @@ impl<const D: usize> Material<D> for Hencky {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = self.kinematics(h)?;
-        Ok(Some((point.energy, point.of.stress())))
+        Ok((point.energy, point.of.stress()))
     }
 
     #[inline(always)]

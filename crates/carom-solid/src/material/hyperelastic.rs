@@ -46,6 +46,10 @@ pub trait Material<const D: usize>: Send + Sync {
     /// Whether ΔW lacks a second derivative where flow begins within a step.
     const YIELDS: bool = false;
 
+    /// Whether its formulas are written for any number: [`Material::at_four`] evaluates four points
+    /// at once.
+    const FOUR: bool = false;
+
     /// Kinematics at a point.
     type Point;
 
@@ -94,28 +98,22 @@ pub trait Material<const D: usize>: Send + Sync {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
-    /// Ψ and P at four points at once, of a law whose formulas are written for any number; none of
-    /// others.
+    /// Ψ and P at four points at once.
     #[inline(always)]
-    fn at_four(&self, _: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
-        Ok(None)
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+        let (energies, stresses) = one_by_one(self, &lanes(h), LANES)?;
+        Ok((Four(energies), four(&stresses)))
     }
 
     /// Ψ and P at the first `count` of four points, in lanes; H = 0 in the
     /// other lanes, whose results do not count.
     #[inline(always)]
     fn at_points(&self, h: &InLanes<D>, count: usize) -> Result<AtPoints<D>, NotPositive> {
-        if let Some((energy, stress)) = self.at_four(&four(h))? {
+        if Self::FOUR {
+            let (energy, stress) = self.at_four(&four(h))?;
             return Ok((energy.0, lanes(&stress)));
         }
-        let mut energies = [0.0; LANES];
-        let mut stresses = [[[0.0; LANES]; D]; D];
-        for l in 0..count {
-            let point = self.at(&get(h, l))?;
-            energies[l] = self.energy(&point);
-            set(&mut stresses, l, &self.stress(&point));
-        }
-        Ok((energies, stresses))
+        one_by_one(self, h, count)
     }
 
     /// ∂P/∂F : dF.
@@ -203,4 +201,21 @@ pub trait Material<const D: usize>: Send + Sync {
     fn volume_ratio(&self, h: &Mat<D>, _: &Past) -> f64 {
         1.0 + excess_det(h)
     }
+}
+
+/// Ψ and P at the first `count` of four points, one after the other.
+#[inline(always)]
+fn one_by_one<const D: usize, L: Material<D> + ?Sized>(
+    law: &L,
+    h: &InLanes<D>,
+    count: usize,
+) -> Result<AtPoints<D>, NotPositive> {
+    let mut energies = [0.0; LANES];
+    let mut stresses = [[[0.0; LANES]; D]; D];
+    for l in 0..count {
+        let point = law.at(&get(h, l))?;
+        energies[l] = law.energy(&point);
+        set(&mut stresses, l, &law.stress(&point));
+    }
+    Ok((energies, stresses))
 }

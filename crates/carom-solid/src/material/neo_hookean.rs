@@ -83,6 +83,7 @@ impl NeoHookean {
 }
 
 impl<const D: usize> Material<D> for NeoHookean {
+    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -101,9 +102,9 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = Self::kinematics(h)?;
-        Ok(Some((self.energy_of(&point), self.stress_of(&point))))
+        Ok((self.energy_of(&point), self.stress_of(&point)))
     }
 
     #[inline(always)]

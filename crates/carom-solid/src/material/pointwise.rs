@@ -10,7 +10,7 @@ use super::memory::Incremental;
 use super::past::Past;
 use super::{Material, NotPositive};
 use crate::body::PointState;
-use crate::discrete_gradient::{between, change_between};
+use crate::discrete_gradient::{AtFour, Potential, Single, between, change_between};
 use crate::points::{LANES, Lanes, Mats, four, get, lanes, set};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
@@ -151,13 +151,24 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     }
 
     fn between(&self, h: [&Mats<D>; 2], count: usize, stress: &mut Mats<D>) -> Result<Lanes, NotPositive> {
-        let mut energies = [0.0; LANES];
-        for l in 0..count {
-            let found = between(self, h.map(|h| get(h, l)).each_ref())?;
-            energies[l] = self.energy(&found.end);
-            set(stress, l, &found.stress);
-        }
-        Ok(energies)
+        wide(
+            #[inline(always)]
+            || {
+                if const { L::FOUR } {
+                    let law = AtFour(self);
+                    let found = between(&law, h.map(four).each_ref())?;
+                    *stress = lanes(&found.stress);
+                    return Ok(law.energy(&found.end).0);
+                }
+                let mut energies = [0.0; LANES];
+                for l in 0..count {
+                    let found = between(&Single(self), h.map(|h| get(h, l)).each_ref())?;
+                    energies[l] = self.energy(&found.end);
+                    set(stress, l, &found.stress);
+                }
+                Ok(energies)
+            },
+        )
     }
 
     fn increments_between(
@@ -166,12 +177,20 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         dh: &Mats<D>,
         count: usize,
     ) -> Result<Mats<D>, NotPositive> {
-        let mut changes = none();
-        for l in 0..count {
-            let ends = h.map(|h| get(h, l));
-            set(&mut changes, l, &change_between(self, ends.each_ref(), &get(dh, l))?);
-        }
-        Ok(changes)
+        wide(
+            #[inline(always)]
+            || {
+                if const { L::FOUR } {
+                    return Ok(lanes(&change_between(&AtFour(self), h.map(four).each_ref(), &four(dh))?));
+                }
+                let mut changes = none();
+                for l in 0..count {
+                    let ends = h.map(|h| get(h, l));
+                    set(&mut changes, l, &change_between(&Single(self), ends.each_ref(), &get(dh, l))?);
+                }
+                Ok(changes)
+            },
+        )
     }
 
     fn memory(&self) -> usize {
@@ -278,11 +297,11 @@ fn evolve_point<const D: usize, L: Material<D>>(
     let h = get(&step.h, l);
     let before = step.before.as_ref().map(|before| get(before, l));
     if let (Some(before), Some(change)) = (&before, &step.change) {
-        set(&mut out.stress, l, &change_between(law, [before, &h], &get(change, l))?);
+        set(&mut out.stress, l, &change_between(&Single(law), [before, &h], &get(change, l))?);
         return Ok(());
     }
     let end = if let Some(before) = &before {
-        let found = between(law, [before, &h])?;
+        let found = between(&Single(law), [before, &h])?;
         set(&mut out.stress, l, &found.stress);
         found.end
     } else {

@@ -42,6 +42,7 @@ impl SaintVenantKirchhoff {
 
 impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     const ENERGY_DEGREE: usize = 4;
+    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -60,9 +61,9 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = self.kinematics(h)?;
-        Ok(Some(((Four::of(0.5) * point.second.double_dot(&point.e)), (point.f * point.second))))
+        Ok((Four::of(0.5) * point.second.double_dot(&point.e), point.f * point.second))
     }
 
     #[inline(always)]

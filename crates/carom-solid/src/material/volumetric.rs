@@ -132,6 +132,7 @@ impl<const D: usize, T: Real> OfSwelling<D, T> {
 
 impl<const D: usize> Material<D> for Swelling {
     const ENERGY_DEGREE: usize = D;
+    const FOUR: bool = true;
     type Point = OfSwelling<D>;
 
     #[inline(always)]
@@ -150,9 +151,9 @@ impl<const D: usize> Material<D> for Swelling {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = OfSwelling::at(h)?;
-        Ok(Some((point.excess, point.cofactor)))
+        Ok((point.excess, point.cofactor))
     }
 
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
@@ -197,6 +198,7 @@ impl<const D: usize, T: Real> OfStrain<D, T> {
 
 impl<const D: usize> Material<D> for TraceOfStrain {
     const ENERGY_DEGREE: usize = 2;
+    const FOUR: bool = true;
     type Point = OfStrain<D>;
 
     #[inline(always)]
@@ -215,9 +217,9 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<Option<(Four, Mat<D, Four>)>, NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = OfStrain::at(h)?;
-        Ok(Some((point.trace(), (Mat::identity() + point.h))))
+        Ok((point.trace(), Mat::identity() + point.h))
     }
 
     #[inline(always)]
