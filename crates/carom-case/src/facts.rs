@@ -1,7 +1,7 @@
 //! Facts of a case that its record states for metrics and studies.
 
 use carom_record::metrics::Overlay;
-use carom_record::{ContactFacts, Facts, Held, body_of};
+use carom_record::{ContactFacts, Facts, Held, Stepping, body_of};
 
 use super::spec::{
     Case, ContactSpec, Enforcement, FormulaSpec, Method, ObstacleMotion, OverlaySpec, Persistency,
@@ -15,6 +15,7 @@ impl Case {
             title: self.title.clone(),
             dimension: self.dimension,
             is_static: self.time.scheme.is_static(),
+            stepping: self.stepping(),
             end: self.time.end,
             refine: self.refine,
             contacts: self.contacts.iter().map(contact).collect(),
@@ -24,6 +25,18 @@ impl Case {
             exact: self.exact.clone(),
             overlays: self.overlays.iter().map(overlay).collect(),
             expects: self.expects.clone(),
+        }
+    }
+
+    /// What the steps of the scheme compute.
+    fn stepping(&self) -> Stepping {
+        let scheme = &self.time.scheme;
+        if scheme.is_explicit() {
+            Stepping::Explicit
+        } else if scheme.conserves() {
+            Stepping::EnergyMomentum
+        } else {
+            Stepping::Implicit
         }
     }
 

@@ -16,6 +16,9 @@ pub struct Facts {
     pub dimension: usize,
     /// Whether the case has load steps instead of time steps.
     pub is_static: bool,
+    /// What the steps of its scheme compute.
+    #[serde(default)]
+    pub stepping: Stepping,
     /// End time.
     pub end: f64,
     /// Factor by which all meshes were refined.
@@ -105,4 +108,17 @@ impl Facts {
 /// The body of a side `body.side`.
 pub fn body_of(side: &str) -> &str {
     side.split_once('.').map_or(side, |(body, _)| body)
+}
+
+/// What the steps of a scheme compute, by which their cost differs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stepping {
+    /// Equilibrium at an instant, by Newton's method.
+    #[default]
+    Implicit,
+    /// Equilibrium with a discrete gradient, by Newton's method.
+    EnergyMomentum,
+    /// Accelerations from forces.
+    Explicit,
 }

@@ -164,18 +164,22 @@ fn levels_of_reference(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<L
 }
 
 /// Schemes of the computed reference: its own, if none is given, and the second one; if that is
-/// given, the other way round.
+/// given, the other way round. Load steps have one scheme.
 const CHUNG_HULBERT: &str = "time.scheme={ kind = \"chung-hulbert\", rho_inf = 0.1 }";
+const STATIC: &str = "time.scheme={ kind = \"static\" }";
 const BATHE: &str = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
 
 /// The runs of the computed reference, the coarsest first, and two checks on its finest mesh: its
-/// scheme and the second one, with twice the finest step. None if no steps fit its factors.
-pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Draft>> {
+/// scheme and the second one, with twice the finest step. None if no steps fit its factors. The
+/// reference of arms that are all static is static.
+pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) -> Option<Vec<Draft>> {
     let given: Vec<_> = file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect();
     let placed = |scheme: &str| (scheme.to_owned(), "fine".to_owned());
     let is_scheme = |(set, _): &&(String, String)| set.starts_with("time.scheme");
     let own: Vec<_> = given.iter().filter(is_scheme).cloned().collect();
-    let own = if own.is_empty() { vec![placed(CHUNG_HULBERT)] } else { own };
+    let of_arms = if is_static { STATIC } else { CHUNG_HULBERT };
+    let own = if own.is_empty() { vec![placed(of_arms)] } else { own };
+    let is_static = own.iter().any(|(set, _)| set.contains("\"static\""));
     let is_bathe = own.iter().any(|(set, _)| set.contains("bathe"));
     let second = vec![placed(if is_bathe { CHUNG_HULBERT } else { BATHE })];
     let levels = levels_of_reference(file, case, step)?;
@@ -203,7 +207,8 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Draft
     let longer = Level { steps: (finest.steps / 2.0).ceil(), ..*finest };
     let of_step = draft(format!("{FINE_NAME}, check of the step"), &longer, &own, true);
     let of_scheme = draft(format!("{FINE_NAME}, check of the scheme"), &longer, &second, true);
-    Some(levels.iter().map(run).chain([of_step, of_scheme]).collect())
+    let checks = std::iter::once(of_step).chain((!is_static).then_some(of_scheme));
+    Some(levels.iter().map(run).chain(checks).collect())
 }
 
 /// The members of an arm's ensemble, except for itself, with the changes that make them from the

@@ -8,6 +8,7 @@
 
 mod arms;
 mod checks;
+mod comparable;
 mod compute;
 mod distributed;
 mod error;

@@ -152,7 +152,9 @@ pub(crate) fn settle(
             return Ok(None);
         };
         let run = Manifest::read(&directory.join(&arm.directory))?;
-        Ok(Some(&run).filter(|run| run.status == Status::Finished).and_then(|run| cost(&run.counters)))
+        Ok(Some(&run)
+            .filter(|run| run.status == Status::Finished)
+            .and_then(|run| cost(&run.counters, run.facts.stepping)))
     };
     let levels = design.steps.len().max(1);
     let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
@@ -243,7 +245,7 @@ fn pilot(
             return Ok((ended, steps, None));
         }
         let run = Manifest::read(&path)?;
-        let cost = cost(&run.counters).filter(|_| ended.status == Status::Finished);
+        let cost = cost(&run.counters, run.facts.stepping).filter(|_| ended.status == Status::Finished);
         pilot.trials.push(Trial { steps, cost });
         pilot.write(&folder)?;
     }

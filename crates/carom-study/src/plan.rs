@@ -10,6 +10,7 @@ use carom_record::{Machine, Source, Status, Warning, now};
 use carom_run::case::{Case, CaseError, Document};
 
 use crate::arms::{self, Draft};
+use crate::comparable;
 use crate::expects;
 use crate::file::{self, StudyFile};
 use crate::goals;
@@ -91,6 +92,8 @@ impl Plan {
         expects::overlays(&file.overlays, &known, &mut problems);
         expects::check(&file.expects, &file.overlays, &known, &mut problems);
         goals::check(&file, &known, &mut problems);
+        let drafts: Vec<(&Draft, &Case)> = planned.iter().map(|p| (&p.draft, &p.case)).collect();
+        comparable::check(&file, &drafts, &mut problems);
         checked.problems(&problems)?;
         checked.end()?;
         let members = checked.members(&file, &planned)?;

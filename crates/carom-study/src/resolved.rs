@@ -135,7 +135,8 @@ impl<'s> Checked<'s> {
         if computed && planned.len() == count {
             let step = planned.iter().map(|p| p.case.time.step).fold(f64::INFINITY, f64::min);
             let first = &planned[0].case;
-            match arms::fine(file, first, step) {
+            let is_static = planned.iter().all(|p| p.case.time.scheme.is_static());
+            match arms::fine(file, first, step, is_static) {
                 Some(levels) => self.plan(file, levels, bases, &mut planned)?,
                 None => self.found.push(self.study.diagnose(&no_steps())),
             }

@@ -31,6 +31,7 @@ pub(super) fn problems(document: &Document, draft: &Draft, misspelt: &[String], 
     for list in ["material", "body", "support", "load", "contact", "tie", "probe", "overlay"] {
         check.unique_names(list);
     }
+    check.supports_beside_bodies();
     check.bodies();
     check.supports();
     check.motions();
@@ -138,6 +139,20 @@ impl<'a> Check<'a> {
                     why,
                     "rename one of them",
                 );
+            }
+        }
+    }
+
+    /// No support may have the name of a body: both begin the names of columns.
+    fn supports_beside_bodies(&mut self) {
+        let name = |node: &Node| node.table()?.get("name")?.text().map(str::to_owned);
+        let bodies: Vec<String> = self.tables("body").iter().filter_map(name).collect();
+        let supports: Vec<Option<String>> = self.tables("support").iter().map(name).collect();
+        for (i, name) in supports.iter().enumerate() {
+            if let Some(name) = name.as_ref().filter(|name| bodies.contains(name)) {
+                let what = format!("a body and a support are both named `{name}`");
+                let why = "the columns of a body and of a support begin with their names";
+                self.add(format!("support[{i}].name"), what, why, "rename the support");
             }
         }
     }

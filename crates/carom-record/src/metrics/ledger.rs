@@ -62,13 +62,12 @@ pub(super) fn drift(given: &Given) -> Option<f64> {
     Some(changes.iter().fold(0.0, |most, x| f64::max(most, x.abs())) / scale)
 }
 
-/// Largest energy that time integrator and contact dissipated or created up to any time. Work of
-/// contact counts only where no obstacle moves: a moving one does work on the bodies, as a load.
+/// Largest energy that time integrator and contact dissipated or created up to any time. The work
+/// that an obstacle does by its motion is not among it, but external work.
 pub(super) fn by_scheme(given: &Given) -> Option<f64> {
     let (_, scale) = balanced(given)?;
-    let moves = given.run.is_some_and(|run| run.manifest.facts.contacts.iter().any(|contact| contact.moves));
     let dissipation = given.history.column("dissipation")?;
-    let work = given.history.column("contact_work").filter(|_| !moves);
+    let work = given.history.column("contact_work");
     let lost = |row: usize| dissipation[row] - work.map_or(0.0, |work| work[row]);
     Some((0..dissipation.len()).map(|row| lost(row).abs()).fold(0.0, f64::max) / scale)
 }

@@ -6,7 +6,9 @@
 //! ```
 //!
 //! Both have limits under refinement of step and mesh, unlike the total variation of a stress or a
-//! contact force. Windows are cut at the ends of the common span. Without a window, ⟨e⟩ = e.
+//! contact force. Windows are cut at the ends of the common span. Without a window, ⟨e⟩ = e, and e
+//! is that at the rows of a, linear between them: a time integrator says nothing about the motion
+//! between its steps.
 
 use std::ops::Range;
 
@@ -100,9 +102,32 @@ impl<'a> Signal<'a> {
         (first < last && is_alike).then_some(first..last)
     }
 
+    /// Difference of a component from that of another signal at the rows of this one, linear between
+    /// them.
+    fn off_at_rows(&self, other: &Self, component: usize, time: f64) -> Option<f64> {
+        let values = self.values[component];
+        let error = |row: usize| {
+            Some(values.get(row)? - at(other.times, other.values[component], *self.times.get(row)?)?)
+        };
+        let after = self.times.partition_point(|t| *t < time);
+        let before = after.saturating_sub(1);
+        let Some(errors) = error(before).zip(error(after)) else {
+            // The other record ends between two rows.
+            return Some(at(self.times, values, time)? - at(other.times, other.values[component], time)?);
+        };
+        if after == before {
+            return Some(errors.0);
+        }
+        let share = (time - self.times[before]) / (self.times[after] - self.times[before]);
+        Some(errors.0 + share * (errors.1 - errors.0))
+    }
+
     /// Difference of a component from that of another signal at a time, and its average; the window
     /// is cut at the ends of the common span, as one of the records may go on for longer.
     fn off(&self, other: &Self, component: usize, time: f64, around: &Around) -> Option<[f64; 2]> {
+        if around.window <= 0.0 {
+            return Some([self.off_at_rows(other, component, time)?; 2]);
+        }
         let half = around.window / 2.0;
         let span = (time - half).max(around.common.start)..(time + half).min(around.common.end);
         let own = self.around(component, time, &span)?;

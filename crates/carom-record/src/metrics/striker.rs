@@ -14,10 +14,12 @@ use crate::History;
 const ROUND_OFF: f64 = 1e-9;
 
 /// Name of the body whose centre moves fastest in the row before the first contact (without
-/// contact, in the first row); the first one of those that are equally fast.
+/// contact, in the first row); the first one of those that are equally fast. An obstacle whose
+/// motion is prescribed has reactions, and is none.
 pub fn striker(history: &History) -> Option<&str> {
     let row = first_episode(history).map_or(0, |e| e.start.saturating_sub(1));
-    let bodies = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
+    let movers = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
+    let bodies = movers.filter(|name| history.column(&format!("{name}.reaction_x")).is_none());
     let speeds =
         bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
     speeds

@@ -31,6 +31,9 @@ pub use super::verdict::{Confidence, Verdict};
 use super::verdict::{Field, recommended};
 use crate::{Reason, Status};
 
+/// Identifier of the warning about energy that friction hides.
+const HIDDEN: &str = "hidden-energy";
+
 /// Windows of averages: w, w/2 and 2w.
 const WINDOWS: usize = 3;
 /// Largest penetration of an arm that is not set apart, relative to the largest motion of a body.
@@ -188,7 +191,7 @@ impl Ranks<'_> {
                     format!("it stopped ({})", row.reason.as_deref().unwrap_or("no reason known"))
                 }
                 Some(share) if row.is_unsound() => format!("it created {} of the energy", short(share)),
-                _ => self.deep(row)?,
+                _ => hidden(row).or_else(|| self.deep(row))?,
             };
             Some(format!("{which}{why}"))
         };
@@ -207,4 +210,10 @@ impl Ranks<'_> {
         let is_deep = own - right > DEEP * motion;
         is_deep.then(|| format!("it penetrates by {}, {} of the motion", short(own), short(own / motion)))
     }
+}
+
+/// What a run says about energy that was created while friction took as much.
+fn hidden(row: &Row) -> Option<String> {
+    let warning = row.warnings.iter().find(|warning| warning.id == HIDDEN)?;
+    Some(warning.what.clone())
 }

@@ -192,12 +192,14 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
     if field.rivals(chosen).next().is_none() {
         at_most(Confidence::Medium, "no other method was run at this cost".to_owned());
     }
-    let open = field.rivals(chosen).filter(|r| !(field.is_better)(chosen.arm, r.arm));
+    let is_behind = |r: &Ranked| (field.is_better)(chosen.arm, r.arm) && r.error > EQUAL_ERROR * chosen.error;
+    let open = field.rivals(chosen).filter(|r| !is_behind(r));
     if let Some(next) = field.least(open, |r| r.error) {
         let is_clear = next.error > CLEAR * chosen.error;
         let most = if is_clear { Confidence::Medium } else { Confidence::Low };
-        let why = format!("not distinguished from {}: {}", field.name(next), known(next));
-        at_most(most, why);
+        let is_equal = next.error <= EQUAL_ERROR * chosen.error;
+        let how = if is_equal { "as accurate as, up to 5 %," } else { "not distinguished from" };
+        at_most(most, format!("{how} {}: {}", field.name(next), known(next)));
     }
     if let Some(accuracy) = field.required() {
         let cheaper = field.ranked.iter().filter(|r| EQUAL_COST * r.cost < chosen.cost);

@@ -239,7 +239,8 @@ pub(super) fn hidden_energy(case: &Case, model: &Model, run: &Run) -> Vec<Found>
     }
     let largest =
         friction.iter().copied().chain(scale.last().copied()).fold(0.0, |a, b| f64::max(a, b.abs()));
-    if most <= MUCH_CREATED * largest {
+    // Without friction there is nothing to hide it: means of steps miss work.
+    if most <= MUCH_CREATED * largest || friction[at] >= 0.0 {
         return Vec::new();
     }
     let [made, taken] = [most, -friction[at]].map(|energy| short(100.0 * energy / largest));

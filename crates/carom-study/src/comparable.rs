@@ -1,0 +1,68 @@
+//! Checks that the runs of a study with a goal can be compared: they end together, no step that is
+//! given for one of them is ignored, and an exact reference has formulas.
+
+use carom_record::study::design::Kind;
+use carom_run::case::{Case, Problem};
+use toml_edit::Value;
+
+use crate::arms::Draft;
+use crate::file::StudyFile;
+
+/// Adds the problems of a study with a goal; `drafts` with their cases are the arms and the runs of
+/// the computed reference.
+pub(crate) fn check(file: &StudyFile, drafts: &[(&Draft, &Case)], problems: &mut Vec<Problem>) {
+    if file.goal.is_none() {
+        return;
+    }
+    ends(drafts, problems);
+    ignored_steps(file, problems);
+    let has_formulas = drafts.iter().any(|(_, case)| !case.exact.is_empty());
+    if file.reference.as_deref() == Some("exact") && !has_formulas {
+        let why = "`reference = \"exact\"` compares with the formulas of [exact] in the case";
+        let help = "add [exact] to the case, or write `reference = \"fine\"`";
+        problems.push(Problem::new("reference", "the case has no exact solution", why, help));
+    }
+}
+
+/// Runs of different lengths differ by what happens in the rest, and in cost.
+fn ends(drafts: &[(&Draft, &Case)], problems: &mut Vec<Problem>) {
+    let Some((first, case)) = drafts.first() else { return };
+    let differs = |other: &Case| {
+        let step = case.time.step.max(other.time.step);
+        (other.time.end - case.time.end).abs() > step
+    };
+    if let Some((draft, other)) = drafts.iter().find(|(_, other)| differs(other)) {
+        let what = format!(
+            "\"{}\" ends at {}, and \"{}\" at {}",
+            draft.name, other.time.end, first.name, case.time.end
+        );
+        let why = "errors and costs of runs are compared over the same time";
+        let path = if draft.role.fine { "fine" } else { draft.path.as_str() };
+        problems.push(Problem::new(path, what, why, "give all of them the same `time.end`"));
+    }
+}
+
+/// Steps of methods and of the computed reference follow from `steps`.
+fn ignored_steps(file: &StudyFile, problems: &mut Vec<Problem>) {
+    let is_step = |(key, _): &(String, Value)| key == "time.step";
+    if file.fine.set.iter().any(is_step) {
+        let why = "the steps of the computed reference follow from those of the arms and from `refine`";
+        problems.push(Problem::new(
+            "fine.set.\"time.step\"",
+            "[fine] cannot set `time.step`",
+            why,
+            "leave it out, or change `refine` of [fine]",
+        ));
+    }
+    if file.steps.is_empty() || file.design == Some(Kind::MatchedCost) {
+        return;
+    }
+    for (i, arm) in file.arms.iter().enumerate().filter(|(_, arm)| !arm.by_cost) {
+        if arm.set.iter().any(is_step) {
+            let why = "every method is run at each of the `steps` of the study";
+            let help = "leave it out, write `match = \"cost\"`, or leave out `steps`";
+            let what = format!("the step of \"{}\" would be ignored", arm.name);
+            problems.push(Problem::new(format!("arm[{i}].set.\"time.step\""), what, why, help));
+        }
+    }
+}
