@@ -173,8 +173,7 @@ pub(crate) fn accelerate(
         let of_place = |place: &Place| pairs.binary_search(place).map_or(0.0, |i| bent[i]);
         let bending: Vec<f64> = closed.places.iter().map(of_place).collect();
         let forces = drive(model, state, gaps, &closed);
-        let turning: Vec<Along> =
-            closed.slip_curvatures(model, state).iter().map(|bent| bent.map(|b| -b)).collect();
+        let turning = turning(model, state, &closed);
         let right = Right { forces: &forces, gaps: &bending, slips: &turning };
         let known: Vec<Option<FrictionState>> =
             closed.places.iter().map(|place| slid.get(place).copied()).collect();
@@ -254,6 +253,17 @@ fn bending(model: &Model, state: &State, gaps: &[Rows], pairs: &[Place]) -> Vec<
         -curvature(row, &second, &state.v) - moved.as_ref().map_or(0.0, |moved| row.along(moved))
     };
     pairs.iter().map(of_pair).collect()
+}
+
+/// −v·∂H/∂y·v of these pairs, minus the rate at which moving supports change their slip rates.
+fn turning(model: &Model, state: &State, closed: &Closed) -> Vec<Along> {
+    let mut turning = closed.slip_curvatures(model, state);
+    if let Some(moved) = moved(model, state) {
+        for (bent, moved) in turning.iter_mut().zip(closed.slip_rates(&moved)) {
+            *bent = [bent[0] + moved[0], bent[1] + moved[1]];
+        }
+    }
+    turning.iter().map(|bent| bent.map(|bent| -bent)).collect()
 }
 
 /// Accelerations of moving supports and of points by those that carry them, zero elsewhere, if

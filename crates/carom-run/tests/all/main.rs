@@ -5,6 +5,7 @@
 mod advice;
 mod augmented;
 mod bar;
+mod belts;
 mod common;
 mod conserving_contact;
 mod contact_pressure;
