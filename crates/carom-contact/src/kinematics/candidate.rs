@@ -1,14 +1,12 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
-use carom_algebra::Vector;
-
 use super::facets::{Facets, OnFacet};
 use super::facing::{Closest, NEAR_END, REACH, Reached};
 use super::joint::AT_JOINT;
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
+use super::opposed::FLUSH;
 use super::reversed::PARALLEL;
-use super::surface::Surface;
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
@@ -28,6 +26,14 @@ const RECAPTURED: f64 = 0.02;
 /// corner is left to a node: the sine of 10°, the angle up to which facets that meet there count as
 /// parallel (`reversed.rs`).
 pub(super) const AROUND: f64 = 0.17;
+/// Cosine of the angle, 30°, up to which a node presses on a facet that is turned from the opposite
+/// of those at the node: joints are blunt up to this angle.
+const PRESSES: f64 = 0.866;
+
+/// Whether a point is at an end of its facet, up to [`NEAR_END`] of the facet's length.
+fn is_near_end(xi: f64) -> bool {
+    (xi.abs() - 1.0).abs() <= 2.0 * NEAR_END
+}
 
 impl NodeToFacet {
     /// Finds the facets that a node may meet on its path.
@@ -74,7 +80,8 @@ impl NodeToFacet {
     }
 
     /// Possible contact of a node without a pair: the first crossing of paths, else the closest
-    /// facet at `now` that the node was not behind before.
+    /// facet at `now` that the node was not behind before; none where a corner is kept out of the
+    /// node's body instead.
     pub(super) fn candidate(
         &self,
         tools: &mut Tools,
@@ -82,6 +89,12 @@ impl NodeToFacet {
         before: Places,
         now: Places,
     ) -> Option<Reached> {
+        let node = self.secondary[place];
+        let is_corners = |reached: &Reached| self.is_left_to_corner(node, reached.facet, reached.xi, before);
+        self.reached(tools, place, before, now).filter(|reached| !is_corners(reached))
+    }
+
+    fn reached(&self, tools: &mut Tools, place: usize, before: Places, now: Places) -> Option<Reached> {
         let node = self.secondary[place];
         let allowed = self.allowed(place);
         let slack = self.slack(place);
@@ -98,8 +111,7 @@ impl NodeToFacet {
             }
         }
         let first = self.first_of(&mut tools.swept, near, node, before, now);
-        let is_at_end =
-            |met: Met<f64>| ((met.xi.abs() - 1.0).abs() <= AT_JOINT).then_some((met.facet, met.xi));
+        let is_at_end = |met: Met<f64>| is_near_end(met.xi).then_some((met.facet, met.xi));
         let is_between =
             |closest: Closest| self.is_between(node, &closest, now).then_some((closest.facet, closest.xi));
         let corner = first.map_or_else(|| closest.and_then(is_between), is_at_end);
@@ -151,11 +163,12 @@ impl NodeToFacet {
         })
     }
 
-    /// Whether a node that is no corner itself meets a corner of the primary, which the other
-    /// direction of contact keeps out: with one of the facets there it would push to one side.
-    /// Where a facet at the corner is parallel to one at the node, the corner is left to the node
-    /// (`reversed.rs`).
-    fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
+    /// Whether a node that is no corner itself is kept out of a facet by the corner at its end, which
+    /// the other direction of contact keeps out of the node's body: with the facet it would push to
+    /// one side. It does not press on the facet, which is turned from all facets at the node, and
+    /// the corner is at one of these. Where a facet at the corner is parallel to one at the
+    /// node, the corner is left to the node (`reversed.rs`).
+    pub(super) fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
         let forward = xi > 0.0;
         let Some((own, around)) = &self.own else { return false };
         let Some(around) = around.get(&node) else { return false };
@@ -164,13 +177,22 @@ impl NodeToFacet {
         if !self.primary.is_corner(first, second, y) {
             return false;
         }
-        let is_sharp = || around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
-        let normals = |surface: &Surface, facets: &[usize]| -> Vec<Vector<2>> {
-            facets.iter().map(|&facet| surface.facet(facet).at(y, 0.0).normal).collect()
+        let shape = self.primary.facet(facet);
+        let normal = shape.at(y, 0.0).normal;
+        let most_opposed = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal.dot(&normal));
+        let most_opposed = most_opposed.fold(f64::INFINITY, f64::min);
+        let corner = shape.at(y, if forward { 1.0 } else { -1.0 }).position;
+        let meets = |&facet: &usize| {
+            let xi = own.facet(facet).closest_point(y, corner, 1.0);
+            xi.is_some_and(|xi| own.gap(facet, xi, corner, y) <= FLUSH * own.length(facet, y))
         };
-        let there = normals(&self.primary, &[first, second]);
-        let is_parallel = |own: &Vector<2>| there.iter().any(|other| own.dot(other) < -PARALLEL);
-        !normals(own, around).iter().any(is_parallel) && (around.len() < 2 || !is_sharp())
+        let is_turned = if is_near_end(xi) {
+            most_opposed > -PARALLEL
+        } else {
+            most_opposed > -PRESSES && around.iter().any(meets)
+        };
+        let is_sharp = || around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
+        is_turned && (around.len() < 2 || !is_sharp())
     }
 
     /// Where a node that has pairs enters the side at another place: neither at the facets of its

@@ -20,7 +20,7 @@ const ASIDE: f64 = -0.2;
 const OPPOSED: f64 = -0.7;
 /// Height of a node over a facet, relative to the length of the facet across the sharp edge, up to
 /// which the node is left to that other facet.
-const FLUSH: f64 = 0.02;
+pub(super) const FLUSH: f64 = 0.02;
 
 /// Whether contact of a node at a height over a facet is left to a facet across a sharp edge.
 /// `beside` gives those facets, each with its length; `most_opposed` is the least nᵢ·n of the
