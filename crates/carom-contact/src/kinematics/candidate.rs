@@ -5,8 +5,7 @@ use super::facets::{Facets, OnFacet};
 use super::facing::{Closest, NEAR_END, REACH, Reached};
 use super::joint::AT_JOINT;
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
-use super::opposed::FLUSH;
-use super::reversed::PARALLEL;
+use super::opposed::{BLUNT, FLUSH, presses};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
@@ -26,10 +25,6 @@ const RECAPTURED: f64 = 0.02;
 /// corner is left to a node: the sine of 10°, the angle up to which facets that meet there count as
 /// parallel (`reversed.rs`).
 pub(super) const AROUND: f64 = 0.17;
-/// Cosine of the angle, 30°, up to which a node presses on a facet that is turned from the opposite
-/// of those at the node: joints are blunt up to this angle.
-const PRESSES: f64 = 0.866;
-
 /// Whether a point is at an end of its facet, up to [`NEAR_END`] of the facet's length.
 fn is_near_end(xi: f64) -> bool {
     (xi.abs() - 1.0).abs() <= 2.0 * NEAR_END
@@ -163,10 +158,9 @@ impl NodeToFacet {
         })
     }
 
-    /// Whether a node that is no corner itself is kept out of a facet by the corner at its end, which
-    /// the other direction of contact keeps out of the node's body: with the facet it would push to
-    /// one side. It does not press on the facet, which is turned from all facets at the node, and
-    /// the corner is at one of these. Where a facet at the corner is parallel to one at the
+    /// Whether a node is kept out of a facet by the corner at its end, which the other direction of
+    /// contact keeps out of the node's body: with the facet it would push to one side. The node does
+    /// not press on the facet, and the corner is at one of the facets at the node. Where a facet at the corner is parallel to one at the
     /// node, the corner is left to the node (`reversed.rs`).
     pub(super) fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
         let forward = xi > 0.0;
@@ -179,20 +173,17 @@ impl NodeToFacet {
         }
         let shape = self.primary.facet(facet);
         let normal = shape.at(y, 0.0).normal;
-        let most_opposed = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal.dot(&normal));
-        let most_opposed = most_opposed.fold(f64::INFINITY, f64::min);
+        let normals = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal);
         let corner = shape.at(y, if forward { 1.0 } else { -1.0 }).position;
         let meets = |&facet: &usize| {
             let xi = own.facet(facet).closest_point(y, corner, 1.0);
             xi.is_some_and(|xi| own.gap(facet, xi, corner, y) <= FLUSH * own.length(facet, y))
         };
-        let is_turned = if is_near_end(xi) {
-            most_opposed > -PARALLEL
+        if is_near_end(xi) {
+            !presses(normals, normal, AROUND)
         } else {
-            most_opposed > -PRESSES && around.iter().any(meets)
-        };
-        let is_sharp = || around.iter().any(|&a| around.iter().any(|&b| own.is_corner(a, b, y)));
-        is_turned && (around.len() < 2 || !is_sharp())
+            !presses(normals, normal, BLUNT) && around.iter().any(meets)
+        }
     }
 
     /// Where a node that has pairs enters the side at another place: neither at the facets of its

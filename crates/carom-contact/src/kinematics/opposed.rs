@@ -12,6 +12,35 @@
 //! of the node opposes the first, one opposes the second, and the node is not clearly in front of
 //! the first.
 
+use carom_algebra::Vector;
+
+/// Sine of the angle, 30°, by which −n may leave the cone of the nᵢ: joints are blunt up to it.
+pub(super) const BLUNT: f64 = 0.5;
+/// Sweeps over the λᵢ.
+const SWEEPS: usize = 20;
+
+/// Whether a node with these normals presses on a facet with the normal n: the distance of −n from
+/// their cone is at most `within`.
+pub(super) fn presses<const D: usize>(
+    normals: impl Iterator<Item = Vector<D>> + Clone,
+    n: Vector<D>,
+    within: f64,
+) -> bool {
+    let mut multipliers = vec![0.0; normals.clone().count()];
+    let mut rest = n * -1.0;
+    for _ in 0..SWEEPS {
+        for (multiplier, normal) in multipliers.iter_mut().zip(normals.clone()) {
+            let step = rest.dot(&normal).max(-*multiplier);
+            *multiplier += step;
+            rest = rest - normal * step;
+        }
+        if rest.norm() <= within {
+            return true;
+        }
+    }
+    false
+}
+
 /// Cosine of the angle between two normals above which they do not oppose each other: 11° from
 /// perpendicular.
 const ASIDE: f64 = -0.2;

@@ -1,13 +1,16 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the nearest one that it was not behind before.
 
+use carom_algebra::Vector;
+
 use super::crossing::crossing;
 use super::node_to_patch::{NEAR_END, NodeToPatch, PAST, REACH};
 use super::patch::place;
 use super::paths::{NOISE, Paths, path};
 use crate::kinematics::candidate::AROUND;
+use crate::kinematics::opposed::{BLUNT, FLUSH, presses};
 use crate::kinematics::way::Met;
-use crate::kinematics::{Kinematics, OnFacet, SpaceHit, SweptPatch};
+use crate::kinematics::{Facets, Kinematics, OnFacet, SpaceHit, SweptPatch};
 use crate::pair::Pair;
 
 /// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
@@ -81,8 +84,57 @@ impl NodeToPatch {
         closest
     }
 
-    /// The point of possible contact of a node without a pair.
+    /// The point of possible contact of a node without a pair; none where a sharp edge is kept out
+    /// of the node's body instead.
     pub(super) fn candidate(
+        &self,
+        swept: &mut SweptPatch,
+        near: &mut Vec<usize>,
+        paths: &Paths,
+        place_of: usize,
+        before: &[f64],
+        now: &[f64],
+    ) -> Option<OnFacet<[f64; 2]>> {
+        let node = self.secondary[place_of];
+        let found = self.reached(swept, near, paths, place_of, before, now);
+        found.filter(|at| !self.is_left_to_edge(node, *at, before))
+    }
+
+    /// Whether a node is kept out of a facet by the nodes of a sharp edge of it, which the other
+    /// direction of contact keeps out of the node's body, as in the plane (`../candidate.rs`).
+    pub(super) fn is_left_to_edge(&self, node: usize, at: OnFacet<[f64; 2]>, y: &[f64]) -> bool {
+        let Some(own) = &self.own else { return false };
+        let OnFacet { facet, xi } = at;
+        let around = own.facets_around(node);
+        let normal = self.primary.middle(facet, y).normal;
+        let presses =
+            |within| presses(around.iter().map(|&facet| own.middle(facet, y).normal), normal, within);
+        if presses(AROUND) {
+            return false;
+        }
+        let meets = |point: Vector<3>| {
+            around.iter().any(|&facet| {
+                let patch = own.patch(facet);
+                let gap = |xi| {
+                    let at = patch.seen_from(point, y, xi);
+                    -at.position.dot(&at.normal)
+                };
+                let xi = patch.closest_point(y, point, NEAR_END);
+                xi.is_some_and(|xi| gap(xi) <= FLUSH * patch.length(y))
+            })
+        };
+        let patch = self.primary.patch(facet);
+        let is_far = !presses(BLUNT);
+        let mut edges = (0..patch.corners()).zip(patch.beyond(xi));
+        edges.any(|(edge, beyond)| {
+            let (nodes, count) = self.primary.shape().edge(edge);
+            (is_far || beyond >= -NEAR_END)
+                && self.primary.is_sharp(facet, edge, y)
+                && nodes.into_iter().take(count).any(|k| meets(place(y, patch.nodes[k])))
+        })
+    }
+
+    fn reached(
         &self,
         swept: &mut SweptPatch,
         near: &mut Vec<usize>,

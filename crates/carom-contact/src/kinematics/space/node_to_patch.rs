@@ -71,7 +71,7 @@ pub struct NodeToPatch {
     /// that meet is that of the nodes.
     pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
     /// The boundary of the body to which the secondary nodes belong.
-    own: Option<Boundary>,
+    pub(super) own: Option<Boundary>,
     pub(super) single: bool,
     /// For nodes of the primary side against the secondary one: their corners.
     reversed: Option<Corners>,
@@ -237,6 +237,9 @@ impl NodeToPatch {
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
+        if self.is_left_to_edge(self.secondary[pair.node], OnFacet { facet: pair.facet, xi }, y) {
+            return Next::Leave;
+        }
         // A pair with all facets of a joint slides on any of them.
         let past = if pair.joint.is_some() { HAND_OVER } else { PAST };
         if patch.furthest(xi) <= past {
