@@ -85,7 +85,10 @@ impl NodeToFacet {
         now: Places,
     ) -> Option<Reached> {
         let node = self.secondary[place];
-        let is_corners = |reached: &Reached| self.is_left_to_corner(node, reached.facet, reached.xi, before);
+        let is_corners = |reached: &Reached| {
+            let closest = self.primary.facet(reached.facet).closest_point(now, now.at(node), REACH);
+            self.is_left_to_corner(node, reached.facet, closest.unwrap_or(reached.xi), before)
+        };
         self.reached(tools, place, before, now).filter(|reached| !is_corners(reached))
     }
 

@@ -220,7 +220,7 @@ impl NodeToFacet {
         let placed = if self.is_frozen() { before } else { now };
         let next = |pair: &Pair, came_from: Option<usize>| {
             let node = self.secondary[pair.node];
-            let is_corners = || self.is_left_to_corner(node, pair.facet, pair.xi, placed);
+            let is_corners = || self.is_left_to_corner(node, pair.facet, pair.xi, before);
             if self.ends_at(node, pair.facet, pair.xi) || is_corners() {
                 return Next::Leave;
             }

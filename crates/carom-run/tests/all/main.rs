@@ -9,6 +9,7 @@ mod belts;
 mod common;
 mod conserving_contact;
 mod contact_pressure;
+mod corners;
 mod damage;
 mod edges;
 mod energy_momentum;

@@ -103,7 +103,8 @@ impl NodeToPatch {
     /// Whether a node is kept out of a facet by the nodes of a sharp edge of it, which the other
     /// direction of contact keeps out of the node's body, as in the plane (`../candidate.rs`).
     pub(super) fn is_left_to_edge(&self, node: usize, at: OnFacet<[f64; 2]>, y: &[f64]) -> bool {
-        let Some(own) = &self.own else { return false };
+        // Of a side with itself the nodes of an edge may be deeper than those that are left to it.
+        let Some(own) = self.own.as_ref().filter(|_| self.folds.is_none()) else { return false };
         let OnFacet { facet, xi } = at;
         let around = own.facets_around(node);
         let normal = self.primary.middle(facet, y).normal;

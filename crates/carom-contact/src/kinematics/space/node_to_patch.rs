@@ -237,9 +237,6 @@ impl NodeToPatch {
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
-        if self.is_left_to_edge(self.secondary[pair.node], OnFacet { facet: pair.facet, xi }, y) {
-            return Next::Leave;
-        }
         // A pair with all facets of a joint slides on any of them.
         let past = if pair.joint.is_some() { HAND_OVER } else { PAST };
         if patch.furthest(xi) <= past {
@@ -301,12 +298,18 @@ impl NodeToPatch {
 
     /// Hands over, adds or drops pairs past the edges of their facets. Returns whether anything but
     /// an inactive pair changed.
-    fn slide(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
+    fn slide(&self, [before, now]: [&[f64]; 2], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         let enters = |place_of: usize, facet: usize, xi: [f64; 2]| {
             let node = self.secondary[place_of];
             self.gap(facet, xi, place(now, node), now) + self.slack(place_of) < 0.0
         };
-        let next = |pair: &Pair, came_from| self.next_facet(pair, came_from, now);
+        let next = |pair: &Pair, came_from| {
+            let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
+            if self.is_left_to_edge(self.secondary[pair.node], at, before) {
+                return Next::Leave;
+            }
+            self.next_facet(pair, came_from, now)
+        };
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
         let held = Held::all(&pairing.pairs);
         let is_near = |pair: &Pair| self.beyond(pair) <= REACH;
@@ -427,7 +430,8 @@ impl Kinematics for NodeToPatch {
         let starts = pairing.fresh;
         pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
         let left = self.leave_joints(&mut pairing.pairs, now);
-        let slid = self.slide(now, pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
+        let slid =
+            self.slide([before, now], pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
         if starts {
             self.start_joints(&mut pairing.pairs, before);
         }
