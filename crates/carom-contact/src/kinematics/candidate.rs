@@ -162,9 +162,10 @@ impl NodeToFacet {
     }
 
     /// Whether a node is kept out of a facet by the corner at its end, which the other direction of
-    /// contact keeps out of the node's body: with the facet it would push to one side. The node does
-    /// not press on the facet, and the corner is at one of the facets at the node. Where a facet at the corner is parallel to one at the
-    /// node, the corner is left to the node (`reversed.rs`).
+    /// contact keeps out of the node's body: with the facet it would push to one side. The node
+    /// does not press on the facet, and the corner is at one of the facets at the node. Where a
+    /// facet at the corner is parallel to one at the node, the corner is left to the node
+    /// (`reversed.rs`).
     pub(super) fn is_left_to_corner(&self, node: usize, facet: usize, xi: f64, y: Places) -> bool {
         let forward = xi > 0.0;
         let Some((own, around)) = &self.own else { return false };

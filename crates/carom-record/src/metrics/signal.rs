@@ -102,8 +102,8 @@ impl<'a> Signal<'a> {
         (first < last && is_alike).then_some(first..last)
     }
 
-    /// Difference of a component from that of another signal at the rows of this one, linear between
-    /// them.
+    /// Difference of a component from that of another signal at the rows of this one, linear
+    /// between them.
     fn off_at_rows(&self, other: &Self, component: usize, time: f64) -> Option<f64> {
         let values = self.values[component];
         let error = |row: usize| {

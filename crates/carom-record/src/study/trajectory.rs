@@ -10,7 +10,8 @@ use crate::{History, Run};
 pub struct Trajectory {
     /// Times of the rows.
     pub times: Vec<f64>,
-    /// Columns of probes and of centres of bodies, and [`FORCE`], the magnitude of the contact force.
+    /// Columns of probes and of centres of bodies, and [`FORCE`], the magnitude of the contact
+    /// force.
     pub columns: BTreeMap<String, Vec<f64>>,
     /// Components of the contact force by axis.
     pub forces: BTreeMap<String, Force>,

@@ -28,6 +28,15 @@ pub(crate) fn folder(cases: &[(&str, &str)], study: &str) -> (tempfile::TempDir,
     (folder, path)
 }
 
+/// A folder with these cases as they stand, and a study.
+pub(crate) fn raw_folder(cases: &[(&str, &str)], study: &str) -> (tempfile::TempDir, PathBuf) {
+    let (folder, path) = folder(&[], study);
+    for (name, case) in cases {
+        fs::write(folder.path().join(name), case).unwrap();
+    }
+    (folder, path)
+}
+
 /// What is wrong with the study in a folder.
 pub(crate) fn wrong((_folder, path): (tempfile::TempDir, PathBuf)) -> Vec<Diagnostic> {
     match Plan::read(&path) {

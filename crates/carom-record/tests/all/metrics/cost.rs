@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use carom_record::Stepping;
 use carom_record::metrics::cost;
 
-/// By hand: 3 steps with 7 iterations and 2 factorisations cost 15 + 14 + 20, of the energy–momentum
-/// scheme 15 + 35 + 20, and 3 explicit steps 4.5.
+/// By hand: 3 steps with 7 iterations and 2 factorisations cost 15 + 14 + 20, of the
+/// energy–momentum scheme 15 + 35 + 20, and 3 explicit steps 4.5.
 #[test]
 fn costs_by_hand() {
     let counters = [("steps", 3), ("newton", 7), ("factorisations", 2), ("activations", 99)];
