@@ -22,7 +22,7 @@ pub enum Overlap {
         /// Index of the contact.
         contact: usize,
     },
-    /// The sides of a contact: a node is deeper than a fifth of the facet that it entered, in a
+    /// The sides of a contact: a node is deeper than a tenth of the facet that it entered, in a
     /// side that meets itself a tenth.
     Sides {
         /// Index of the contact.

@@ -37,16 +37,8 @@ pub struct Penetration {
     lengths: Vec<HashMap<usize, f64>>,
 }
 
-/// Depth over the length of a facet above which contact of two sides is doubtful, whatever its law
-/// allows.
-const DEEP: f64 = 0.2;
-/// Depth over the length of a facet above which contact of a side with itself is doubtful: no
-/// stiffness that was chosen for it explains the depth.
-const DEEP_IN_ITSELF: f64 = 0.1;
-
-fn is_doubtful(contact: &Contact, depth: f64, length: f64) -> bool {
-    depth > if contact.itself { DEEP_IN_ITSELF } else { DEEP } * length
-}
+/// Depth over the length of a facet above which a contact is doubtful, whatever its law allows.
+const DEEP: f64 = 0.1;
 
 /// Penetration at a state.
 #[derive(Debug, Default)]
@@ -61,9 +53,9 @@ pub struct Measured {
 
 impl Measured {
     /// Adds the depth of a node in a facet, or of a facet at a node, of this length.
-    fn add(&mut self, (k, contact): (usize, &Contact), constrained: bool, depth: f64, length: f64) {
+    fn add(&mut self, k: usize, constrained: bool, depth: f64, length: f64) {
         self.depths.add(depth, constrained);
-        if is_doubtful(contact, depth, length) && self.doubtful.last() != Some(&k) {
+        if depth > DEEP * length && self.doubtful.last() != Some(&k) {
             self.doubtful.push(k);
         }
     }
@@ -229,7 +221,7 @@ impl Penetration {
         }
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| contact.itself) {
             if let Some((body, inside, length)) = self.folded(model, contact, &state.y) {
-                measured.add((k, contact), false, inside.depth, length);
+                measured.add(k, false, inside.depth, length);
                 let is_beyond = inside.depth > inside.limit;
                 measured.beyond = measured.beyond.or(is_beyond.then_some((k, body, inside)));
             }
@@ -238,8 +230,7 @@ impl Penetration {
             let Pierced { node, place, depth, counts, limit, length, .. } = pierced;
             if depth > counts || state.closed(contact, place).is_some() {
                 let length = if counts > 0.0 { f64::INFINITY } else { length };
-                let of = (contact, &model.contacts[contact]);
-                measured.add(of, pierced.is_held && counts == 0.0, depth, length);
+                measured.add(contact, pierced.is_held && counts == 0.0, depth, length);
             }
             let inside = Inside { node, what: What::Obstacle, depth, limit };
             measured.beyond = measured.beyond.or((depth > limit).then_some((contact, part, inside)));
@@ -252,10 +243,10 @@ impl Penetration {
                 contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes())
             {
                 let gap = contact.kinematics.signed_distance(place, &state.y);
-                measured.add((k, contact), true, -gap.unwrap_or(0.0), length(node));
+                measured.add(k, true, -gap.unwrap_or(0.0), length(node));
             }
             below_obstacle(contact, &state.y)
-                .for_each(|(node, depth)| measured.add((k, contact), false, depth, length(node)));
+                .for_each(|(node, depth)| measured.add(k, false, depth, length(node)));
         }
         measured.doubtful.sort_unstable();
         measured.doubtful.dedup();
@@ -398,7 +389,7 @@ impl Penetration {
                     if let Some((facet, xi)) = watched.near {
                         let bound = skin.distance(facet, xi, point, y);
                         let length = entered(facet).length;
-                        let is_deep = contact.is_some_and(|k| is_doubtful(&model.contacts[k], bound, length));
+                        let is_deep = contact.is_some() && bound > DEEP * length;
                         if bound <= known && bound <= watched.limit(length) && !is_deep {
                             continue;
                         }
@@ -415,8 +406,7 @@ impl Penetration {
                 *first = k;
             }
             found.depths.add(depth, watched.constrained);
-            found.is_doubtful |=
-                contact.is_some_and(|k| is_doubtful(&model.contacts[k], depth, entered.length));
+            found.is_doubtful |= contact.is_some() && depth > DEEP * entered.length;
             let mut limit = watched.limit(entered.length);
             if watched.constrained
                 && entered.is_at_kink

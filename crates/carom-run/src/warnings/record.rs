@@ -90,15 +90,13 @@ pub(super) fn edge_between_nodes(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     entered.collect()
 }
 
-/// Contacts of which a node was deeper in the other side than a fifth of the facet that it entered,
-/// or in its own side than a tenth.
+/// Contacts of which a node was deeper in the other side than a tenth of the facet that it entered.
 pub(super) fn deep_penetration(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let deep = events(run, "deep").filter_map(|event| {
         let name = event.data.get("contact")?.as_str()?;
         let contact = case.contacts.iter().find(|contact| contact.name == name)?;
-        let share = if contact.is_of_itself() { "a tenth" } else { "a fifth" };
         let what = format!(
-            "from t = {} on a node lay deeper in the other side than {share} of the facet that it entered",
+            "from t = {} on a node lay deeper in the other side than a tenth of the facet that it entered",
             short(event.time)
         );
         let advice = match (contact.enforcement, contact.method) {

@@ -129,7 +129,7 @@ impl NodeToPatch {
         let mut edges = (0..patch.corners()).zip(patch.beyond(xi));
         edges.any(|(edge, beyond)| {
             let (nodes, count) = self.primary.shape().edge(edge);
-            (is_far || beyond >= -NEAR_END)
+            (is_far || beyond > PAST)
                 && self.primary.is_sharp(facet, edge, y)
                 && nodes.into_iter().take(count).any(|k| meets(place(y, patch.nodes[k])))
         })
