@@ -88,20 +88,6 @@ impl Machine {
         }
     }
 
-    /// Whether times measured on both machines can be compared.
-    pub fn is_of_type(&self, other: &Self) -> bool {
-        (&self.os, &self.arch, &self.processor) == (&other.os, &other.arch, &other.processor)
-    }
-
-    /// Description of the machine: processor, operating system and architecture.
-    pub fn kind(&self) -> String {
-        [&self.processor[..], &self.os, &self.arch]
-            .into_iter()
-            .filter(|s| !s.is_empty())
-            .collect::<Vec<_>>()
-            .join(", ")
-    }
-
     /// The largest number of threads, or of concurrent runs, that is accepted. More than one per
     /// core can only cost time and memory.
     pub fn most_concurrent(&self) -> usize {

@@ -54,7 +54,8 @@ pub(crate) fn headline(run: &Recorded, scene: Option<&Scene>) -> Markup {
     let free = || [facts.largest_stress(), facts.displacement(), facts.kinetic(), facts.energy_lost()];
     let no_rebound = metrics::no_rebound(run);
     // A body that is driven strikes where it rebounds, and is pressed where it does not.
-    let is_impact = !run.is_static() && run.has_contact() && (!is_driven || no_rebound.is_none());
+    let rebounds = metrics::Impact::first(run).is_ok_and(|impact| impact.separation > Some(0.0));
+    let is_impact = !run.is_static() && run.has_contact() && (!is_driven || rebounds);
     let no_rebound = no_rebound.filter(|_| is_impact);
     let numbers: Vec<Option<Number>> = if run.is_static() {
         facts.reactions().into_iter().chain(outside()).collect()

@@ -171,7 +171,7 @@ const BATHE: &str = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
 
 /// The runs of the computed reference, the coarsest first, and two checks on its finest mesh: its
 /// scheme and the second one, with twice the finest step. None if no steps fit its factors. The
-/// reference of arms that are all static is static.
+/// reference of arms that are all static is static, and has no second scheme.
 pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) -> Option<Vec<Draft>> {
     let given: Vec<_> = file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect();
     let placed = |scheme: &str| (scheme.to_owned(), "fine".to_owned());

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use carom_record::study::{Arm, StudyManifest};
-use carom_record::{Machine, Manifest, RecordError, Status};
+use carom_record::{Manifest, RecordError, Status};
 use carom_run::recording::{Progress, RunError};
 
 use crate::compute::compute;
@@ -21,22 +21,22 @@ use crate::run::{Outcome, conclude, create};
 /// Creates the directory of a study, which must not exist, and computes nothing.
 ///
 /// # Errors
-/// Input/output or system error, and a study with steps of matched cost: [`plan_timed`].
+/// Input/output or system error, and a study with steps of matched cost: [`plan_settled`].
 pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
     let manifest = &plan.manifest;
     if let Some(arm) = manifest.arms.iter().find(|arm| manifest.by_cost(arm)) {
-        return Err(StudyError::Timed { arm: arm.name.clone() });
+        return Err(StudyError::Unsettled { arm: arm.name.clone() });
     }
     create(plan, directory)
 }
 
-/// As [`plan`], but finds the steps of matched cost by timing runs on this machine, one after the
-/// other. The other runs can then be computed by processes on machines of its type. Returns whether
-/// all steps were found, which a stop prevents.
+/// As [`plan`], but finds the steps of matched cost by trial runs, one after the other. The other
+/// runs can then be computed by processes on any machine. Returns whether all steps were found,
+/// which a stop prevents.
 ///
 /// # Errors
 /// Input/output or system error.
-pub fn plan_timed(
+pub fn plan_settled(
     plan: &Plan,
     directory: &Path,
     observe: &mut dyn FnMut(&Event),
@@ -51,7 +51,7 @@ pub fn plan_timed(
 ///
 /// # Errors
 /// Input/output or system error, no such run, a damaged record, a run that another process is
-/// computing, and another type of machine than that on which steps of matched cost were found.
+/// computing, and steps of matched cost that were not found yet.
 pub fn arm(
     directory: &Path,
     number: usize,
@@ -70,7 +70,7 @@ pub fn arm(
     if let Some(ended) = record.as_ref().and_then(|run| ended(&run.manifest)) {
         return Ok(ended);
     }
-    comparable(&manifest, directory)?;
+    settled(&manifest, directory)?;
     match compute(&manifest, directory, i, record.is_some(), 1.into(), observe, stop) {
         // Another process created it since.
         Err(StudyError::Arm { source: RunError::Record(RecordError::Exists { path }), .. }) => {
@@ -83,23 +83,13 @@ pub fn arm(
     }
 }
 
-/// Checks that costs can be compared by their times: all steps of matched cost have been found, on
-/// a machine of this type.
-fn comparable(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyError> {
-    let timed: Vec<&Arm> = manifest.arms.iter().filter(|arm| manifest.by_cost(arm)).collect();
-    if timed.is_empty() {
-        return Ok(());
+/// Checks that all steps of matched cost have been found.
+fn settled(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyError> {
+    let begun = |arm: &&Arm| matches!(manifest.state(directory, arm), Ok((Some(_), _)));
+    match manifest.arms.iter().filter(|arm| manifest.by_cost(arm)).find(|arm| !begun(arm)) {
+        Some(arm) => Err(StudyError::Unsettled { arm: arm.name.clone() }),
+        None => Ok(()),
     }
-    let begun = |arm: &&&Arm| matches!(manifest.state(directory, arm), Ok((Some(_), _)));
-    if let Some(arm) = timed.iter().find(|arm| !begun(arm)) {
-        return Err(StudyError::Timed { arm: arm.name.clone() });
-    }
-    let there = &manifest.machine;
-    let here = Machine::current();
-    if there.is_of_type(&here) {
-        return Ok(());
-    }
-    Err(StudyError::OtherMachine { there: there.kind(), here: here.kind() })
 }
 
 /// How a run ended, if it has.

@@ -39,22 +39,14 @@ pub enum StudyError {
         /// Message of the reader: the part of the case that it cannot read.
         what: String,
     },
-    /// The steps of some arms depend on measured times, which differ between machines.
+    /// The steps of some arms are not known before other runs.
     #[error(
-        "arm \"{arm}\" has a step of matched cost, which is found from times measured on one machine. The times \
-         of the other runs are compared with them, so that processes elsewhere need a machine of the same type"
+        "arm \"{arm}\" has a step of matched cost, which trial runs find; they must be made before runs are \
+         computed one by one"
     )]
-    Timed {
+    Unsettled {
         /// Name of the arm.
         arm: String,
-    },
-    /// The steps of matched cost were found on a machine of another type.
-    #[error("the steps of matched cost were timed on another type of machine, {there}; this one is {here}")]
-    OtherMachine {
-        /// Type of the machine on which the study was planned.
-        there: String,
-        /// Type of this machine.
-        here: String,
     },
     /// The concurrent runs do not fit into the memory together.
     #[error("{what} need about {}, and {} are available", gibibytes(*need), gibibytes(*available))]
@@ -93,15 +85,9 @@ impl StudyError {
             Self::Record(error) => return error.cure(),
             Self::Arm { .. } => return None,
             Self::Damaged { place, .. } => format!("remove {} and compute the arm again", place.display()),
-            Self::Timed { .. } => {
-                "plan it with `carom study plan --settle` on a machine of the type that computes the runs, \
-                 which finds these steps there and then, compute it in one process (in Python without \
-                 `client`), or give the arms their steps"
-                    .to_owned()
-            }
-            Self::OtherMachine { .. } => {
-                "compute it on that type (Slurm: --constraint, --nodelist), or plan the \
-                                          study here"
+            Self::Unsettled { .. } => {
+                "plan it with `carom study plan --settle`, which finds these steps there and then, compute it \
+                 in one process (in Python without `client`), or give the arms their steps"
                     .to_owned()
             }
             Self::NoRun { .. } => "give one of these numbers".to_owned(),

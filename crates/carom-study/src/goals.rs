@@ -58,5 +58,21 @@ pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec
         let what = format!("the exact solution has nothing that the goal `{}` compares", goal.word());
         let help = "add a formula for it to [exact] of the case, or write `reference = \"fine\"`";
         problems.push(Problem::new("reference", what, "[exact] has no such column", help));
+        return;
+    }
+    let Some((_, case)) = arms.first().filter(|_| is_exact) else { return };
+    if file.window.is_none() {
+        let what = format!("the goal `{}` beside an exact reference needs `window`", goal.word());
+        let why = "forces and stresses are compared after averaging, and formulas have no contact interval to \
+                   take the time from";
+        problems.push(Problem::new("reference", what, why, "write for example `window = 0.01`"));
+    }
+    let has = |name: &str, axis: &str| case.exact.contains_key(&format!("contact_{name}_{axis}"));
+    let unpaired = ["x", "y", "z"].into_iter().find(|axis| has("force", axis) != has("impulse", axis));
+    if let Some(axis) = unpaired.filter(|_| goal == Goal::Force) {
+        let missing = if has("force", axis) { "impulse" } else { "force" };
+        let what = format!("[exact] has no `contact_{missing}_{axis}`");
+        let why = "the goal `force` compares forces averaged by their impulses, and needs both columns";
+        problems.push(Problem::new("reference", what, why, "add its formula to [exact] of the case"));
     }
 }

@@ -28,7 +28,7 @@ mod suite;
 mod theory;
 mod verify;
 
-pub use distributed::{arm, collect, plan, plan_timed};
+pub use distributed::{arm, collect, plan, plan_settled};
 pub use error::StudyError;
 pub use explained::{explained, similar_key};
 pub use jobs::{Ended, Event};

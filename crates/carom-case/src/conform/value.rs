@@ -286,7 +286,11 @@ impl Check {
             Kind::Variant(variants)
                 if let Some(word) = node.text().filter(|word| variants().table(word).is_some()) =>
             {
-                format!("write `{} = {{ {} = \"{word}\" }}`", key.name, variants().tag)
+                let table = variants().table(word).map_or(&[][..], |table| table.keys);
+                let required = table.iter().filter(|key| matches!(key.default, Default::Required));
+                let required = required.map(|key| format!(", {} = {}", key.name, key.example));
+                let required: String = required.collect();
+                format!("write `{} = {{ {} = \"{word}\"{required} }}`", key.name, variants().tag)
             }
             Kind::Tables(table) if key.example.is_empty() => {
                 format!("write its header in double brackets: {}", table.name)

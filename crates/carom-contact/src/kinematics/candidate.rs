@@ -25,9 +25,10 @@ const RECAPTURED: f64 = 0.02;
 /// corner is left to a node: the sine of 10°, the angle up to which facets that meet there count as
 /// parallel (`reversed.rs`).
 pub(super) const AROUND: f64 = 0.17;
-/// Whether a point is at an end of its facet, up to [`NEAR_END`] of the facet's length.
+
+/// Whether a point is at an end of its facet, up to [`NEAR_END`] of the facet's length, or past it.
 fn is_near_end(xi: f64) -> bool {
-    (xi.abs() - 1.0).abs() <= 2.0 * NEAR_END
+    xi.abs() >= 1.0 - 2.0 * NEAR_END
 }
 
 impl NodeToFacet {
@@ -170,6 +171,10 @@ impl NodeToFacet {
         let forward = xi > 0.0;
         let Some((own, around)) = &self.own else { return false };
         let Some(around) = around.get(&node) else { return false };
+        // A frozen contact point has no other direction of contact.
+        if self.is_frozen() {
+            return false;
+        }
         let Some(next) = self.primary.neighbour(facet, forward) else { return false };
         let [first, second] = if forward { [facet, next] } else { [next, facet] };
         if !self.primary.is_corner(first, second, y) {
@@ -177,16 +182,17 @@ impl NodeToFacet {
         }
         let shape = self.primary.facet(facet);
         let normal = shape.at(y, 0.0).normal;
-        let normals = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal);
+        let normals: Vec<_> = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal).collect();
         let corner = shape.at(y, if forward { 1.0 } else { -1.0 }).position;
         let meets = |&facet: &usize| {
             let xi = own.facet(facet).closest_point(y, corner, 1.0);
-            xi.is_some_and(|xi| own.gap(facet, xi, corner, y) <= FLUSH * own.length(facet, y))
+            let near = FLUSH * own.length(facet, y);
+            xi.is_some_and(|xi| own.gap(facet, xi, corner, y).abs() <= near)
         };
         if is_near_end(xi) {
-            !presses(normals, normal, AROUND)
+            !presses(&normals, normal, AROUND)
         } else {
-            !presses(normals, normal, BLUNT) && around.iter().any(meets)
+            !presses(&normals, normal, BLUNT) && around.iter().any(meets)
         }
     }
 

@@ -153,15 +153,12 @@ impl NodeToFacet {
     pub(super) fn may_press(&self, node: usize, facet: usize, y: Places) -> bool {
         let Some((own, around)) = &self.own else { return true };
         let Some(around) = around.get(&node) else { return true };
-        let most_opposed = |&facet: &usize| {
-            let there = self.primary.facet(facet).at(y, 0.0).normal;
-            let cosines = around.iter().map(|&own_facet| own.facet(own_facet).at(y, 0.0).normal.dot(&there));
-            cosines.fold(f64::INFINITY, f64::min)
-        };
+        let normals = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal);
         let here = self.primary.facet(facet).at(y, 0.0);
         let height = (y.at(node) - here.position).dot(&here.normal);
-        let sized = |other: usize| (other, self.primary.length(other, y));
-        !is_left(&facet, height, || self.primary.across_corners(facet, y).map(sized), most_opposed)
+        let sized =
+            |other: usize| (self.primary.facet(other).at(y, 0.0).normal, self.primary.length(other, y));
+        !is_left(&normals, here.normal, height, || self.primary.across_corners(facet, y).map(sized))
     }
 
     /// Contact of nodes of the primary side with the secondary one (`reversed.rs`), once the body

@@ -100,7 +100,7 @@ pub(crate) const WORK: [Definition; 7] = [
     d(
         "cost",
         Unit::None,
-        "5 steps + 2 newton + 10 factorisations + linear_iterations; 5 newton with energy-momentum, 1.5 steps of explicit schemes",
+        "5 steps + 2 newton + 10 factorisations + linear_iterations; with energy-momentum 5 newton; of explicit schemes 1.5 steps + 10 factorisations",
         OWN,
         "counted cost, in evaluations of the internal forces; the same on every machine",
         |g| cost(&g.run?.manifest.counters, g.run?.manifest.facts.stepping),

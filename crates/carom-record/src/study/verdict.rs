@@ -125,12 +125,12 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
         return Err(std::iter::once(nothing).chain(field.apart.iter().map(apart)).collect());
     };
     let required = field.required();
-    let is_accurate = |r: &&Ranked| match required {
-        Some(accuracy) => r.interval[1] <= accuracy,
-        None => {
-            let is_alike = r.error <= CLEAR * best.error && !(field.is_better)(best.arm, r.arm);
-            is_alike || r.error <= EQUAL_ERROR * best.error
+    let is_accurate = |r: &&Ranked| {
+        if let Some(accuracy) = required {
+            return r.interval[1] <= accuracy;
         }
+        let is_alike = r.error <= CLEAR * best.error && !(field.is_better)(best.arm, r.arm);
+        is_alike || r.error <= EQUAL_ERROR * best.error
     };
     let candidates = || all().filter(|r| is_accurate(r) && field.is_on_front(r));
     let Some(cheapest) = field.least(candidates(), |r| r.cost) else {
@@ -168,7 +168,7 @@ fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
         }
         None if best.arm == chosen.arm => "no arm has a smaller error".to_owned(),
         None => format!(
-            "least cost of the arms that are at most half less accurate than the most accurate one, and not distinguished from it, {}: {}",
+            "least cost of the arms that are as accurate as the most accurate one, up to 5 %, or half less accurate and not distinguished from it, {}: {}",
             field.name(best),
             known(best)
         ),
@@ -197,7 +197,7 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
     if let Some(next) = field.least(open, |r| r.error) {
         let is_clear = next.error > CLEAR * chosen.error;
         let most = if is_clear { Confidence::Medium } else { Confidence::Low };
-        let is_equal = next.error <= EQUAL_ERROR * chosen.error;
+        let is_equal = (field.is_better)(chosen.arm, next.arm);
         let how = if is_equal { "as accurate as, up to 5 %," } else { "not distinguished from" };
         at_most(most, format!("{how} {}: {}", field.name(next), known(next)));
     }

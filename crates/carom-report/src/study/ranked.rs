@@ -14,8 +14,8 @@ use crate::labels::with_unit;
 use crate::text::{Label, typeset};
 
 /// How places are given.
-const PLACES: &str = "The place of an arm is one plus the number of arms of its level whose intervals are below its own; \
-    identical arms count once. Cost is counted, in evaluations of the internal forces.";
+const PLACES: &str = "The place of an arm is one plus the number of arms of its level that are distinguishably better: \
+    every solution within the uncertainty of the reference is nearer to them. Intervals may overlap; identical arms count once. Cost is counted, in evaluations of the internal forces.";
 
 /// Orders above it are not those of a scheme.
 const HIGHEST: f64 = 4.0;

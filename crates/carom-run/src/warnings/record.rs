@@ -213,10 +213,9 @@ pub(super) fn energy_created(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     share.map(|share| Found::of_the_run(what(share))).into_iter().collect()
 }
 
-/// Energy that is created while friction takes as much: the
-/// rise of total − external_work − friction_work above its running minimum, judged against the
-/// energy scale, or friction's work if that is more. Not given where the energy as a whole shows
-/// it.
+/// Energy that is created while friction takes as much: the rise of total − external_work −
+/// friction_work above its running minimum, judged against the energy scale, or friction's work if
+/// that is more. Not given where the energy as a whole shows it.
 pub(super) fn hidden_energy(case: &Case, model: &Model, run: &Run) -> Vec<Found> {
     let history = &run.history;
     let columns =

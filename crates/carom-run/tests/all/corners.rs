@@ -78,3 +78,42 @@ fn a_corner_does_not_hold_the_nodes_that_pass_it() {
         }
     }
 }
+
+/// The same in space, where the nodes of a straight edge of the block keep the bar out.
+#[test]
+fn an_edge_does_not_hold_the_nodes_that_pass_it() {
+    let (sin, cos) = 70.0_f64.to_radians().sin_cos();
+    let in_space = |sides| {
+        let [x, y] = [0.01 * sin, 0.01 * cos];
+        let [u, v] = [2.0 * cos - 0.05 * sin, -2.0 * sin - 0.05 * cos];
+        bar(70.0, sides, "kind = \"chung-hulbert\", rho_inf = 0.5", 16)
+            .replace("dimension = 2", "dimension = 3")
+            .replace("\"Q4\"", "\"Hex8\"")
+            .replace("\"rectangle\"", "\"box\"")
+            .replace(
+                "min = [-0.97, 0.0], max = [1.03, 0.5], cells = [16, 2]",
+                "min = [-0.97, 0.0, 0.0], max = [1.03, 0.5, 0.25], cells = [16, 2, 1]",
+            )
+            .replace(
+                "min = [-0.5, -0.5], max = [0.0, 0.0], cells = [1, 1]",
+                "min = [-0.5, -0.5, -0.1], max = [0.0, 0.0, 0.35], cells = [1, 1, 3]",
+            )
+            .replace(
+                "rotate = -70.0, about = [0.0, 0.0]",
+                "rotate = { axis = [0.0, 0.0, 1.0], angle = -70.0 }, about = [0.0, 0.0, 0.0]",
+            )
+            .replace(&format!("shift = [{x:?}, {y:?}]"), &format!("shift = [{x:?}, {y:?}, 0.0]"))
+            .replace(&format!("velocity = [{u:?}, {v:?}]"), &format!("velocity = [{u:?}, {v:?}, 0.0]"))
+            .replace("block.bottom", "block.front")
+            .replace(
+                &format!("body_force = [{:?}, {:?}]", -3.0 * sin, -3.0 * cos),
+                &format!("body_force = [{:?}, {:?}, 0.0]", -3.0 * sin, -3.0 * cos),
+            )
+            .replace("fix = [\"x\", \"y\"]", "fix = [\"x\", \"y\", \"z\"]")
+            .replace("step = 0.001", "step = 0.002")
+    };
+    let run = record(&in_space(["bar", "block"]), &[]);
+    let last = |axis: &str| *run.column(&format!("bar.velocity_{axis}")).unwrap().last().unwrap();
+    let speed = cos * last("x") - sin * last("y");
+    assert!((speed - 2.0).abs() < 0.1, "{speed}");
+}

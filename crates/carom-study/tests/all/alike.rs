@@ -42,7 +42,7 @@ energy_guard = false
 [output]
 fields_every = 0
 [exact]
-"left.center_x" = "-0.5 + if(t < 0.5, 0.1*t, if(t < 0.9, 0.1*t - 0.25*(t - 0.5)^2, 0.05 - 0.1*(t - 0.9) - 0.01 + 0.01))"
+"left.center_x" = "-0.5 + if(t < 0.5, 0.1*t, if(t < 0.9, 0.1*t - 0.25*(t - 0.5)^2, 0.05 - 0.1*(t - 0.9)))"
 "#;
 
 fn run(case: &str, study: &str) -> Study {
@@ -164,4 +164,19 @@ fn what_cannot_be_compared_is_refused() {
     assert!(found.what.contains("[fine] cannot set") && found.line == 11, "{found:?}");
     let found = first(&two("[fine]\nset = { \"time.end\" = 0.6 }\n"));
     assert!(found.what.contains("ends at 0.6"), "{found:?}");
+}
+
+#[test]
+fn an_exact_reference_has_what_its_goal_compares() {
+    let first = |exact: &str, study: &str| {
+        let case = format!("{}[exact]\n{exact}\n", COLLISION.split("[exact]").next().unwrap());
+        let study = format!(
+            "case = \"case.toml\"\ngoal = \"force\"\nreference = \"exact\"\n{study}\n[[arm]]\nname = \"a\"\n"
+        );
+        common::wrong(common::raw_folder(&[("case.toml", &case)], &study)).swap_remove(0)
+    };
+    let found = first("contact_force_x = \"t\"", "window = 0.1");
+    assert!(found.what.contains("[exact] has no `contact_impulse_x`") && found.line == 3, "{found:?}");
+    let found = first("contact_force_x = \"t\"\ncontact_impulse_x = \"t^2/2\"", "");
+    assert!(found.what.contains("needs `window`"), "{found:?}");
 }

@@ -67,6 +67,6 @@ fn steps_of_matched_cost_are_not_planned() {
     let (folder, path) = common::folder(&[("bar.toml", CASE)], study);
     let directory = folder.path().join("study");
     let refused = plan(&Plan::read(&path).unwrap(), &directory).unwrap_err();
-    assert!(matches!(refused, StudyError::Timed { ref arm } if arm == "b"), "{refused}");
+    assert!(matches!(refused, StudyError::Unsettled { ref arm } if arm == "b"), "{refused}");
     assert!(!directory.exists());
 }

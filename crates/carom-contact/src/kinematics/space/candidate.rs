@@ -103,35 +103,41 @@ impl NodeToPatch {
     /// Whether a node is kept out of a facet by the nodes of a sharp edge of it, which the other
     /// direction of contact keeps out of the node's body, as in the plane (`../candidate.rs`).
     pub(super) fn is_left_to_edge(&self, node: usize, at: OnFacet<[f64; 2]>, y: &[f64]) -> bool {
-        // Of a side with itself the nodes of an edge may be deeper than those that are left to it.
-        let Some(own) = self.own.as_ref().filter(|_| self.folds.is_none()) else { return false };
+        let Some(own) = &self.own else { return false };
         let OnFacet { facet, xi } = at;
+        // Where a piece folds, the nodes of an edge may be deeper than those that are left to them.
+        let folds = self.folds.as_ref();
+        if folds.is_some_and(|(folds, _)| !folds.is_of_another_piece(node, facet)) {
+            return false;
+        }
+        let patch = self.primary.patch(facet);
+        let is_sharp = |&(edge, _): &(usize, f64)| self.primary.is_sharp(facet, edge, y);
+        let mut sharp = (0..patch.corners()).zip(patch.beyond(xi)).filter(is_sharp).peekable();
+        if sharp.peek().is_none() {
+            return false;
+        }
         let around = own.facets_around(node);
+        let normals: Vec<_> = around.iter().map(|&facet| own.middle(facet, y).normal).collect();
         let normal = self.primary.middle(facet, y).normal;
-        let presses =
-            |within| presses(around.iter().map(|&facet| own.middle(facet, y).normal), normal, within);
-        if presses(AROUND) {
+        if presses(&normals, normal, AROUND) {
             return false;
         }
         let meets = |point: Vector<3>| {
-            around.iter().any(|&facet| {
+            around.iter().filter(|&&facet| !own.is_mirror(facet)).any(|&facet| {
                 let patch = own.patch(facet);
                 let gap = |xi| {
                     let at = patch.seen_from(point, y, xi);
-                    -at.position.dot(&at.normal)
+                    at.position.dot(&at.normal).abs()
                 };
                 let xi = patch.closest_point(y, point, NEAR_END);
                 xi.is_some_and(|xi| gap(xi) <= FLUSH * patch.length(y))
             })
         };
-        let patch = self.primary.patch(facet);
-        let is_far = !presses(BLUNT);
-        let mut edges = (0..patch.corners()).zip(patch.beyond(xi));
-        edges.any(|(edge, beyond)| {
+        let is_far = !presses(&normals, normal, BLUNT);
+        sharp.any(|(edge, beyond)| {
             let (nodes, count) = self.primary.shape().edge(edge);
-            (is_far || beyond > PAST)
-                && self.primary.is_sharp(facet, edge, y)
-                && nodes.into_iter().take(count).any(|k| meets(place(y, patch.nodes[k])))
+            let mut points = nodes.into_iter().take(count).map(|k| place(y, patch.nodes[k]));
+            (is_far || beyond > PAST) && points.any(meets)
         })
     }
 

@@ -141,13 +141,12 @@ impl NodeToPatch {
         });
         move |facet| {
             let Some(around) = &around else { return true };
-            let most_opposed = |there: &PatchPoint| {
-                around.iter().map(|own| own.dot(&there.normal)).fold(f64::INFINITY, f64::min)
-            };
             let here = middle(facet);
             let height = (place(y, node) - here.position).dot(&here.normal);
-            let sized = |other: usize| (middle(other), self.primary.patch(other).length(y));
-            !is_left(&here, height, || self.primary.bent_away(facet, y).map(sized), most_opposed)
+            let sized = |other: usize| (middle(other).normal, self.primary.patch(other).length(y));
+            !is_left(&around.iter().copied(), here.normal, height, || {
+                self.primary.bent_away(facet, y).map(sized)
+            })
         }
     }
 

@@ -22,8 +22,7 @@ Then compute every run, in any order and on any machine that shares the director
   seq N | parallel carom study arm DIR          with GNU parallel, for N runs
 and write the tables and the page with:
   carom study collect DIR
-A study at matched cost needs timings to choose the time steps: --settle measures them on this
-machine; `carom study arm` then refuses to run on a machine of another type.")]
+A study at matched cost needs trial runs to choose the time steps: --settle makes them.")]
     Plan {
         /// The study file, or - for standard input
         study: PathBuf,
@@ -33,7 +32,7 @@ machine; `carom study arm` then refuses to run on a machine of another type.")]
         /// Also write DIR/slurm.sh, a job array for Slurm
         #[arg(long)]
         slurm: bool,
-        /// Choose the steps of equal cost now, by timing runs on this machine one after the other
+        /// Choose the steps of equal cost now, by trial runs one after the other
         #[arg(long)]
         settle: bool,
     },
@@ -71,11 +70,11 @@ impl StudyCommand {
 fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exit, Failure> {
     let plan = super::plan(&super::document(study, &[])?, study)?;
     let directory = directory::given(directory, "name another directory")?;
-    let timed = plan.manifest.arms.iter().any(|arm| plan.manifest.by_cost(arm));
-    if settle && timed {
+    let is_matched = plan.manifest.arms.iter().any(|arm| plan.manifest.by_cost(arm));
+    if settle && is_matched {
         let stop = stop_on_signal()?;
         let mut runs = Runs::of_study(&plan.manifest);
-        let settled = carom_study::plan_timed(&plan, &directory, &mut |e| runs.event(e), &stop);
+        let settled = carom_study::plan_settled(&plan, &directory, &mut |e| runs.event(e), &stop);
         drop(runs);
         if !settled? {
             let place = directory.display();
@@ -93,9 +92,7 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
         let path = directory.join("slurm.sh");
         let failed = |e| Failure::cannot("write", &path, &e);
         let whole = std::path::absolute(&*directory).map_err(failed)?;
-        let machine = timed.then(|| plan.manifest.machine.kind());
-        std::fs::write(&path, script(&plan.manifest.title, &whole, count, machine.as_deref()))
-            .map_err(failed)?;
+        std::fs::write(&path, script(&plan.manifest.title, &whole, count)).map_err(failed)?;
     }
     let place = directory.display();
     out::summary(&format!("{count} runs in {place}; each is computed by:"))?;
@@ -106,25 +103,16 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
     Ok(Exit::Done)
 }
 
-/// A job array. A run that was killed continues when its task is started again. `machine`: the type
-/// of node whose times are compared.
-fn script(title: &str, directory: &Path, count: usize, machine: Option<&str>) -> String {
+/// A job array. A run that was killed continues when its task is started again.
+fn script(title: &str, directory: &Path, count: usize) -> String {
     let place = directory.display().to_string().replace('\'', "'\\''");
     let title = title.replace(|c: char| !c.is_alphanumeric(), "-");
-    let timed = machine.map_or_else(String::new, |kind| {
-        format!(
-            "#SBATCH --exclusive\n\
-             # Times are compared: all nodes must be of this type, see --constraint and --nodelist of sbatch.\n\
-             # {kind}\n"
-        )
-    });
     format!(
         "#!/bin/sh\n\
          #SBATCH --job-name={title}\n\
          #SBATCH --array=1-{count}\n\
          #SBATCH --cpus-per-task=1\n\
          #SBATCH --requeue\n\
-         {timed}\
          # Afterwards: carom study collect '{place}'\n\
          exec carom study arm '{place}' \"$SLURM_ARRAY_TASK_ID\"\n"
     )
