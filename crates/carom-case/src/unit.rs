@@ -55,6 +55,10 @@ impl Labels {
         }
         let [length, time, mass] = &self.0;
         let of = match unit {
+            Some("") if suffix == "%" => {
+                let number = shifted(number, -2).unwrap_or_else(|| number.to_owned());
+                return Some(format!("write `{key} = {number}`: a fraction, not percent"));
+            }
             Some("") => return Some(format!("write `{key} = {number}`: the number alone, it has no unit")),
             Some("degrees") => return Some("write the number alone, in degrees".to_owned()),
             Some(unit) => format!("{unit} of the case"),

@@ -3,6 +3,7 @@
 
 use carom_record::metrics::Overlay;
 use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
+use carom_record::study::{Claim, Comparison};
 use carom_record::{Expect, Expression, OrderOf, Reason};
 use carom_run::case::{Case, Problem, history_columns};
 
@@ -64,6 +65,24 @@ pub(crate) fn check(
     }
 }
 
+/// Adds the problems of a study's claims: metrics and columns that no record has.
+pub(crate) fn claims(
+    claims: &[Claim],
+    overlays: &[Overlay],
+    arms: &[(&str, &Case)],
+    problems: &mut Vec<Problem>,
+) {
+    let known = &Known { arms, overlays };
+    for (i, claim) in claims.iter().enumerate() {
+        let Ok(comparison) = Comparison::parse(&claim.compare) else { continue };
+        if let Some(what) = comparison.questions().iter().find_map(|asked| question(asked, known).err()) {
+            let why = "claims compare numbers of the records of the arms";
+            let help = "`carom explain` lists the metrics; a column is asked for as 'last A.uy of \"ARM\"'";
+            problems.push(Problem::new(format!("claim[{i}].compare"), what, why, help));
+        }
+    }
+}
+
 fn question(question: &Question, known: &Known) -> Result<(), Reason> {
     question.quantities().into_iter().try_for_each(|quantity| match quantity {
         Quantity::Reduced(_, columns) => series(columns, known.arms),
@@ -85,7 +104,10 @@ fn metric(name: &str, arm: Option<&str>, known: &Known) -> Result<(), Reason> {
         }
         _ if metric_names().contains(&name) => arms_of(arm, arms).map(drop),
         _ => {
-            Err(format!("there is no metric `{name}`; the metrics are: {}", metric_names().join(", ")).into())
+            let names = metric_names();
+            let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(known, name));
+            let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+            Err(format!("there is no metric `{name}`: {near}the metrics are: {}", names.join(", ")).into())
         }
     }
 }

@@ -91,6 +91,7 @@ impl Plan {
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
         expects::overlays(&file.overlays, &known, &mut problems);
         expects::check(&file.expects, &file.overlays, &known, &mut problems);
+        expects::claims(&file.claims, &file.overlays, &known, &mut problems);
         goals::check(&file, &known, &mut problems);
         let drafts: Vec<(&Draft, &Case)> = planned.iter().map(|p| (&p.draft, &p.case)).collect();
         comparable::check(&file, &drafts, &mut problems);

@@ -292,6 +292,9 @@ impl Check {
                 let required: String = required.collect();
                 format!("write `{} = {{ {} = \"{word}\"{required} }}`", key.name, variants().tag)
             }
+            Kind::Sides if let Some(side) = node.text().filter(|text| text.contains('.')) => {
+                format!("write `{} = [\"{side}\"]`", key.name)
+            }
             Kind::Tables(table) if key.example.is_empty() => {
                 format!("write its header in double brackets: {}", table.name)
             }

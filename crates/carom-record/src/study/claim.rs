@@ -221,7 +221,7 @@ impl Comparison {
     }
 
     /// Left and right side of the comparison.
-    pub(super) fn questions(&self) -> &[Question] {
+    pub fn questions(&self) -> &[Question] {
         &self.sides
     }
 }

@@ -23,8 +23,9 @@ pub(super) fn wave_speed(case: &Case, _: &Model) -> Vec<Found> {
         let speed = material.wave_speed(case.plane);
         if !(SPEEDS[0]..=SPEEDS[1]).contains(&(speed * unit)) {
             let [own, metric] = [speed, speed * unit].map(short);
-            let what =
-                format!("the speed of its pressure waves is {own} {}, {metric} m/s", case.labels().velocity);
+            let metric = if unit == 1.0 { String::new() } else { format!(", {metric} m/s") };
+            let velocity = &case.labels().velocity;
+            let what = format!("the speed of its pressure waves is {own} {velocity}{metric}");
             found.push(Found::of_material(&material.name, what));
         }
     }

@@ -180,3 +180,11 @@ fn an_exact_reference_has_what_its_goal_compares() {
     let found = first("contact_force_x = \"t\"\ncontact_impulse_x = \"t^2/2\"", "");
     assert!(found.what.contains("needs `window`"), "{found:?}");
 }
+
+#[test]
+fn a_claim_about_a_metric_that_does_not_exist_is_refused() {
+    let claim = "[[claim]]\ntext = \"x\"\ncompare = 'energy_lsot of \"a\" < 0.1'\n";
+    let study = format!("case = \"case.toml\"\n[[arm]]\nname = \"a\"\n{claim}");
+    let found = common::wrong(common::raw_folder(&[("case.toml", COLLISION)], &study)).swap_remove(0);
+    assert!(found.what.contains("did you mean `energy_lost`?") && found.line == 6, "{found:?}");
+}
