@@ -71,22 +71,3 @@ pub(super) fn is_left<const D: usize, I: Iterator<Item = (Vector<D>, f64)>>(
         && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(other) < OPPOSED)
         && !presses(&normals.clone().collect::<Vec<_>>(), n, ASIDE)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A wedge of the full angle 2a points down: its normals are a above the horizontal, and the
-    /// direction down is in their cone however sharp it is. A single normal leaves it by its angle.
-    #[test]
-    fn a_sharp_tip_presses_on_what_is_below() {
-        let up = Vector([0.0, 1.0]);
-        for angle in [5.0_f64, 10.0, 30.0, 80.0] {
-            let (sin, cos) = angle.to_radians().sin_cos();
-            let sides = [Vector([cos, -sin]), Vector([-cos, -sin])];
-            assert!(presses(&sides, up, 0.17), "{angle}");
-            assert_eq!(presses(&sides[..1], up, 0.5), sin > 0.75_f64.sqrt(), "{angle}");
-            assert!(!presses(&sides, up * -1.0, 0.9), "{angle}");
-        }
-    }
-}

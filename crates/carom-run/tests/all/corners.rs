@@ -117,3 +117,47 @@ fn an_edge_does_not_hold_the_nodes_that_pass_it() {
     let speed = cos * last("x") - sin * last("y");
     assert!((speed - 2.0).abs() < 0.1, "{speed}");
 }
+
+/// A wedge of 20° that falls on a block rebounds beside the corner, too, where the block is softer.
+#[test]
+fn a_sharp_tip_rebounds_beside_a_corner() {
+    let wedge = |place: f64| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 2000.0, poisson = 0.3 }}]
+[[body]]
+name = "wedge"
+material = "m"
+element = "T3"
+mesh = {{ shape = "polygon", points = [[0.0, 0.0], [0.17633, 1.0], [-0.17633, 1.0]], size = 2.0 }}
+place = {{ shift = [{place:?}, 0.005] }}
+velocity = [0.0, -1.0]
+[[body]]
+name = "block"
+material = "m"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [-1.0, -0.5], max = [0.0, 0.0], cells = [2, 1] }}
+[[support]]
+on = ["block.bottom"]
+fix = ["x", "y"]
+[[contact]]
+name = "joint"
+secondary = "wedge.skin"
+primary = "block.skin"
+[time]
+end = 0.05
+step = 0.0005
+scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
+[output]
+fields_every = 0
+"#
+        )
+    };
+    let rebound = |place| {
+        let run = record(&wedge(place), &[]);
+        *run.column("wedge.velocity_y").unwrap().last().unwrap()
+    };
+    let [beside, middle] = [-0.1, -0.4].map(rebound);
+    assert!(0.2 < beside && beside < middle, "{beside} {middle}");
+}
