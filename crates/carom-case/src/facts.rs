@@ -28,7 +28,7 @@ impl Case {
         }
     }
 
-    /// What the steps of the scheme compute.
+    /// Computations of a step of the scheme.
     fn stepping(&self) -> Stepping {
         let scheme = &self.time.scheme;
         if scheme.is_explicit() {

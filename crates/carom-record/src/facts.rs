@@ -16,7 +16,7 @@ pub struct Facts {
     pub dimension: usize,
     /// Whether the case has load steps instead of time steps.
     pub is_static: bool,
-    /// What the steps of its scheme compute.
+    /// Computations of a step of its scheme.
     #[serde(default)]
     pub stepping: Stepping,
     /// End time.
@@ -110,7 +110,7 @@ pub fn body_of(side: &str) -> &str {
     side.split_once('.').map_or(side, |(body, _)| body)
 }
 
-/// What the steps of a scheme compute, by which their cost differs.
+/// Computations of a step of a scheme, by which its cost differs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stepping {

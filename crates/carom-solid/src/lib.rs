@@ -22,6 +22,7 @@ mod net;
 mod point_locator;
 mod points;
 mod positions;
+mod potential;
 pub mod quadrature;
 mod quality;
 #[doc(hidden)]

@@ -212,7 +212,7 @@ impl Ranks<'_> {
     }
 }
 
-/// What a run says about energy that was created while friction took as much.
+/// The warning of a run about energy that was created while friction took as much.
 fn hidden(row: &Row) -> Option<String> {
     let warning = row.warnings.iter().find(|warning| warning.id == HIDDEN)?;
     Some(warning.what.clone())

@@ -72,7 +72,7 @@ impl StudyManifest {
         Err(why.into())
     }
 
-    /// What a run of the reference is compared in.
+    /// Quantities in which a run of the reference is compared.
     fn trajectory(&self, run: &Run, striker: Option<&str>) -> Trajectory {
         let metrics = metrics::of_run_beside(run, &self.overlays);
         Trajectory::of(run, &metrics).with_center_of(striker)
@@ -93,7 +93,7 @@ impl StudyManifest {
         let arms = self.reference_arms();
         let mut levels = Vec::new();
         let mut averaged = Vec::new();
-        // One body for all runs: which of two that are equally fast is the faster one is round-off.
+        // All runs are compared in one body: of two that are equally fast, round-off decides.
         let mut striker: Option<String> = None;
         for &i in &arms {
             let mut members = Vec::new();

@@ -79,7 +79,7 @@ fn a_corner_does_not_hold_the_nodes_that_pass_it() {
     }
 }
 
-/// The same in space, where the nodes of a straight edge of the block keep the bar out.
+/// In space the nodes of a straight edge of the block keep the bar out.
 #[test]
 fn an_edge_does_not_hold_the_nodes_that_pass_it() {
     let (sin, cos) = 70.0_f64.to_radians().sin_cos();

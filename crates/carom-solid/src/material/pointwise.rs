@@ -10,8 +10,9 @@ use super::memory::Incremental;
 use super::past::Past;
 use super::{Material, NotPositive};
 use crate::body::PointState;
-use crate::discrete_gradient::{AtFour, Potential, Single, between, change_between};
+use crate::discrete_gradient::{between, change_between};
 use crate::points::{LANES, Lanes, Mats, four, get, lanes, set};
+use crate::potential::{AtFour, Potential, Single};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
