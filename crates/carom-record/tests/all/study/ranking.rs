@@ -9,7 +9,7 @@ use carom_record::study::ranking::{Ranking, Ranks};
 use carom_record::study::reference::{Known, Level, Reference, Trajectory};
 use carom_record::study::verdict::Confidence;
 use carom_record::study::{Arm, Row, StudyManifest, StudySource};
-use carom_record::{Machine, Status};
+use carom_record::{Machine, Status, Warning};
 
 /// A run: its method and level, its energy error (the measure of the goal `energy`, which should be
 /// 0), and its counted cost.
@@ -236,6 +236,37 @@ fn unsound_arms_are_set_apart() {
     ];
     assert_eq!(apart, [(0, known[0]), (1, known[1]), (2, known[2])]);
     assert_eq!((arms(&ranking), ranking.verdict.unwrap().arm), (vec![(3, 1)], 3));
+}
+
+/// Energy that friction hides sets an arm apart, and so does a quantity of the measure that it
+/// lacks: no arm vanishes.
+#[test]
+fn no_arm_is_left_out_without_a_word() {
+    let runs = [("a", 0, 0.01, 1.0), ("b", 0, 0.02, 1.0), ("c", 0, 0.03, 1.0)];
+    let (manifest, mut rows) = study(&runs);
+    rows[0].warnings.push(Warning {
+        id: "hidden-energy".into(),
+        place: "the run".into(),
+        what: "scheme and contact created 8 %".into(),
+        why: String::new(),
+        advice: String::new(),
+    });
+    rows[1].metrics.retain(|metric| metric.name != "energy_error");
+    let ranking = by_energy(&(manifest, rows));
+    let apart: Vec<_> = ranking.apart.iter().map(|apart| (apart.arm, apart.why.as_str())).collect();
+    assert_eq!(apart, [(0, "scheme and contact created 8 %"), (1, "it lacks a quantity of the measure")]);
+    assert_eq!(arms(&ranking), [(2, 1)]);
+}
+
+/// An error that is three times as large is not distinguished by a coarse reference, and is not
+/// recommended for being cheaper all the same.
+#[test]
+fn an_arm_that_is_clearly_less_accurate_is_not_recommended() {
+    let (mut manifest, rows) = study(&[("a", 0, 0.03, 2.0), ("b", 0, 0.09, 1.0)]);
+    manifest.accuracy = None;
+    let ranking = by_columns(Goal::Trajectory, &(manifest, rows), &reference(0.1));
+    assert_eq!(arms(&ranking), [(0, 1), (1, 1)]);
+    assert_eq!(ranking.verdict.unwrap().arm, 0);
 }
 
 /// B has all results of A: it takes no place from C, and is not tied with A.
