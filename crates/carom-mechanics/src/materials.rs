@@ -53,7 +53,7 @@ impl Materials {
 
     /// Memory of the materials at the start of a step of length `dt`.
     pub fn past(&self, dt: f64) -> Past<'_> {
-        Past { memory: &self.memory, dt }
+        Past::new(&self.memory, dt)
     }
 
     /// Becomes a copy of others in all but the memory, which a step overwrites.

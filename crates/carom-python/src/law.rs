@@ -117,7 +117,7 @@ impl<const D: usize> Material<D> for Law {
     type Point = Point;
 
     fn at(&self, h: &Mat<D>) -> Result<Point, NotPositive> {
-        self.after(h, &Past { memory: &[0.0; MOST], dt: 0.0 })
+        self.after(h, &Past::new(&[0.0; MOST], 0.0))
     }
 
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point, NotPositive> {

@@ -30,10 +30,14 @@
 //!
 //! In plane stress, where the thickness without flow is another one, the work of a step with flow
 //! is the difference of the energies.
+//!
+//! Laws are called behind a pointer, for four points at once: this code is compiled once for a
+//! dimension, not for every law.
 
-use carom_algebra::{Mat, Real, wide};
+use carom_algebra::{Four, Mat, Real, wide};
 
-use crate::material::{NotPositive, excess_det};
+use crate::material::{AtFour, NotPositive, excess_det};
+use crate::points::{Mats, four, lanes};
 use crate::potential::Potential;
 
 /// Largest ΔE:ΔE with which three Gauss points give W₁ − W₀ to round-off: their error is
@@ -47,195 +51,164 @@ const OUTER: f64 = 0.387_298_334_620_741_7;
 /// Weight of an outer Gauss point.
 const WEIGHT: f64 = 5.0 / 18.0;
 
-/// A discrete gradient.
-pub(crate) struct Between<const D: usize, T, P> {
-    /// The law at the end, of an objective one at F̂.
-    pub(crate) end: P,
-    /// P.
-    pub(crate) stress: Mat<D, T>,
-}
-
-/// The discrete gradient.
-#[inline(always)]
-pub(crate) fn between<const D: usize, T: Real, L: Potential<D, T>>(
-    law: &L,
-    h: [&Mat<D, T>; 2],
-) -> Result<Between<D, T, L::Point>, NotPositive> {
-    if L::OBJECTIVE {
-        let path = Path::new(law, h)?;
-        let end = law_at(law, &path.ends[1])?.point;
-        let s = path.middle.stress + path.change * path.phi(law, &end)?;
-        return Ok(Between { end, stress: path.f * s });
-    }
-    let end = law.at(h[1])?;
-    let middle = law.at(&((*h[0] + *h[1]) * T::of(0.5)))?;
-    Ok(Between { end, stress: law.stress(&middle) })
-}
-
-/// ∂P/∂F₁ : dF₁. It is not symmetric: F_m multiplies from the left, F₁ from the right.
-#[inline(always)]
-pub(crate) fn change_between<const D: usize, T: Real, L: Potential<D, T>>(
-    law: &L,
-    h: [&Mat<D, T>; 2],
-    dh: &Mat<D, T>,
-) -> Result<Mat<D, T>, NotPositive> {
-    let half = T::of(0.5);
-    if !L::OBJECTIVE {
-        let point = law.at(&((*h[0] + *h[1]) * half))?;
-        return law.change(&point, &(*dh * half));
-    }
-    let path = Path::new(law, h)?;
-    let de = symmetric(&((Mat::identity() + *h[1]).transposed() * *dh));
-    let [phi, dphi] = path.phi_and_change(law, &de)?;
-    let s = path.middle.stress + path.change * phi;
-    let ds = path.middle.change(law, &(de * half))? + path.change * dphi + de * phi;
-    Ok(*dh * s * half + path.f * ds)
-}
-
-/// W at a strain. This, [`law_at`], [`smooth_at`] and [`AtStrain::change`] are compiled once for a
-/// law, not wherever they are called.
+/// The law at the end, with P in place of its stress; overwrites the memory with that at the end,
+/// unless it is empty.
 #[inline(never)]
-fn energy_at<const D: usize, T: Real, L: Potential<D, T>>(
-    law: &L,
-    strain: &Mat<D, T>,
-) -> Result<T, NotPositive> {
-    wide(
-        #[inline(always)]
-        || Ok(law.energy(&law.at(&root(strain)?)?)),
-    )
-}
-
-/// The law at a strain.
-#[inline(never)]
-fn law_at<const D: usize, T: Real, L: Potential<D, T>>(
-    law: &L,
-    strain: &Mat<D, T>,
-) -> Result<AtStrain<D, T, L::Point>, NotPositive> {
+pub(crate) fn between<const D: usize>(
+    law: &Potential<D>,
+    h: [&Mats<D>; 2],
+    memory: &mut [f64],
+) -> Result<AtFour<D>, NotPositive> {
     wide(
         #[inline(always)]
         || {
-            let excess = root(strain)?;
-            Ok(AtStrain::of(law, law.at(&excess)?, &excess))
+            let h = h.map(four);
+            if !law.law.traits().objective {
+                let end = law.at(&h[1], memory)?;
+                let middle = law.at(&((h[0] + h[1]) * Four::of(0.5)), &mut [])?;
+                return Ok(AtFour { stress: middle.stress, ..end });
+            }
+            let path = Path::new(law, &h)?;
+            let end = law.at(&root(&path.ends[1])?, memory)?;
+            let s = path.middle.stress + path.change * path.phi(&end)?;
+            Ok(AtFour { stress: path.f * s, ..end })
         },
     )
 }
 
-/// S* at a strain, of a law without flow in the step.
+/// ∂P/∂F₁ : dF₁. It is not symmetric: F_m multiplies from the left, F₁ from the right.
 #[inline(never)]
-fn smooth_at<const D: usize, T: Real, L: Potential<D, T>>(
-    law: &L,
-    strain: &Mat<D, T>,
-) -> Result<AtStrain<D, T, L::Point>, NotPositive> {
-    let at = law_at(law, strain)?;
-    let unevolved = law.unevolved(&at.point).map(|point| at.replaced(law, point));
-    Ok(unevolved.unwrap_or(at))
+pub(crate) fn change_between<const D: usize>(
+    law: &Potential<D>,
+    h: [&Mats<D>; 2],
+    dh: &Mats<D>,
+) -> Result<Mats<D>, NotPositive> {
+    wide(
+        #[inline(always)]
+        || {
+            let half = Four::of(0.5);
+            let h = h.map(four);
+            let dh = four(dh);
+            if !law.law.traits().objective {
+                return Ok(lanes(&law.change(&((h[0] + h[1]) * half), &(dh * half))?));
+            }
+            let path = Path::new(law, &h)?;
+            let de = symmetric(&((Mat::identity() + h[1]).transposed() * dh));
+            let [phi, dphi] = path.phi_and_change(&de)?;
+            let s = path.middle.stress + path.change * phi;
+            let ds = path.middle.change(law, &(de * half))? + path.change * dphi + de * phi;
+            Ok(lanes(&(dh * s * half + path.f * ds)))
+        },
+    )
 }
 
 /// A law at a strain.
-struct AtStrain<const D: usize, T, P> {
-    /// The law at F̂.
-    point: P,
+struct AtStrain<const D: usize> {
+    /// F̂ − I.
+    h: Mat<D, Four>,
     /// F̂⁻¹.
-    inverse: Mat<D, T>,
+    inverse: Mat<D, Four>,
+    /// W.
+    energy: Four,
     /// S.
-    stress: Mat<D, T>,
+    stress: Mat<D, Four>,
+    /// ψ.
+    released: Four,
 }
 
-impl<const D: usize, T: Real, P> AtStrain<D, T, P> {
+impl<const D: usize> AtStrain<D> {
     #[inline(always)]
-    fn of<L: Potential<D, T, Point = P>>(law: &L, point: P, excess: &Mat<D, T>) -> Self {
-        let inverse = (Mat::identity() + *excess).inverse();
-        let stress = symmetric(&(inverse * law.stress(&point)));
-        Self { point, inverse, stress }
+    fn new(law: &Potential<D>, strain: &Mat<D, Four>) -> Result<Self, NotPositive> {
+        let h = root(strain)?;
+        let AtFour { stored, stress, dissipated, released } = law.at(&h, &mut [])?;
+        let inverse = (Mat::identity() + h).inverse();
+        let stress = symmetric(&(inverse * stress));
+        Ok(Self { h, inverse, energy: stored + dissipated, stress, released })
     }
 
-    /// S of another point at the same strain.
+    /// Whether there is flow at a point.
     #[inline(always)]
-    fn replaced<L: Potential<D, T, Point = P>>(&self, law: &L, point: P) -> Self {
-        let stress = symmetric(&(self.inverse * law.stress(&point)));
-        Self { point, inverse: self.inverse, stress }
+    fn flows(&self) -> bool {
+        self.released.find(|released| released != 0.0).is_some()
     }
 
-    /// ∂S/∂E : dE.
-    #[inline(never)]
-    fn change<L: Potential<D, T, Point = P>>(
-        &self,
-        law: &L,
-        de: &Mat<D, T>,
-    ) -> Result<Mat<D, T>, NotPositive> {
-        wide(
-            #[inline(always)]
-            || {
-                let df = self.inverse.transposed() * *de;
-                Ok(self.inverse * (law.change(&self.point, &df)? - df * self.stress))
-            },
-        )
+    /// ∂S/∂E : dE, of the law of this point.
+    #[inline(always)]
+    fn change(&self, law: &Potential<D>, de: &Mat<D, Four>) -> Result<Mat<D, Four>, NotPositive> {
+        let df = self.inverse.transposed() * *de;
+        Ok(self.inverse * (law.change(&self.h, &df)? - df * self.stress))
     }
 }
 
 /// The straight path between two strains.
-struct Path<const D: usize, T, P> {
+struct Path<'a, const D: usize> {
+    law: &'a Potential<'a, D>,
     /// E₀ and E₁.
-    ends: [Mat<D, T>; 2],
+    ends: [Mat<D, Four>; 2],
     /// The law at E_m.
-    middle: AtStrain<D, T, P>,
-    /// The smooth part of the potential, of a law that yields.
-    unevolved: Option<AtStrain<D, T, P>>,
+    middle: AtStrain<D>,
+    /// The smooth part at E_m, where it differs at a point.
+    unevolved: Option<AtStrain<D>>,
     /// F_m.
-    f: Mat<D, T>,
+    f: Mat<D, Four>,
     /// ΔE.
-    change: Mat<D, T>,
+    change: Mat<D, Four>,
     /// ΔE:ΔE where the correction φ ΔE is above the round-off of S(E_m), and 0 elsewhere. It is of
     /// the size ‖ΔE‖² W‴, S(E_m) of the size ‖E_m‖ W″.
-    square: T,
+    square: Four,
 }
 
-impl<const D: usize, T: Real, P> Path<D, T, P> {
+impl<'a, const D: usize> Path<'a, D> {
     #[inline(always)]
-    fn new<L: Potential<D, T, Point = P>>(law: &L, h: [&Mat<D, T>; 2]) -> Result<Self, NotPositive> {
+    fn new(law: &'a Potential<D>, h: &[Mat<D, Four>; 2]) -> Result<Self, NotPositive> {
         for h in h {
             // Strains do not tell a reflection.
-            let det_f = T::of(1.0) + excess_det(h);
+            let det_f = Four::of(1.0) + excess_det(h);
             if let Some(det_f) = det_f.find(|det_f| det_f.is_nan() || det_f <= 0.0) {
                 return Err(NotPositive(det_f));
             }
         }
-        let half = T::of(0.5);
-        let ends = h.map(strain);
+        let half = Four::of(0.5);
+        let ends = [strain(&h[0]), strain(&h[1])];
         let middle_strain = (ends[0] + ends[1]) * half;
-        let f = Mat::identity() + (*h[0] + *h[1]) * half;
-        let change = symmetric(&(f.transposed() * (*h[1] - *h[0])));
+        let f = Mat::identity() + (h[0] + h[1]) * half;
+        let change = symmetric(&(f.transposed() * (h[1] - h[0])));
         let square = change.double_dot(&change).zip(
             middle_strain.double_dot(&middle_strain),
             #[inline(always)]
             |square, middle| if square > f64::EPSILON * middle { square } else { 0.0 },
         );
-        let middle = law_at(law, &middle_strain)?;
-        let unevolved = law.unevolved(&middle.point).map(|point| middle.replaced(law, point));
-        Ok(Self { ends, middle, unevolved, f, change, square })
+        let middle = AtStrain::new(law, &middle_strain)?;
+        let unevolved = if law.law.traits().splits && middle.flows() {
+            Some(AtStrain::new(&law.smooth(), &middle_strain)?)
+        } else {
+            None
+        };
+        Ok(Self { law, ends, middle, unevolved, f, change, square })
     }
 
     /// The smooth part at E_m.
     #[inline(always)]
-    fn smooth(&self) -> &AtStrain<D, T, P> {
+    fn smooth(&self) -> &AtStrain<D> {
         self.unevolved.as_ref().unwrap_or(&self.middle)
     }
 
     /// The smooth part at E₊ and E₋.
     #[inline(always)]
-    fn outer<L: Potential<D, T, Point = P>>(&self, law: &L) -> Result<[AtStrain<D, T, P>; 2], NotPositive> {
-        let middle = (self.ends[0] + self.ends[1]) * T::of(0.5);
-        let offset = self.change * T::of(OUTER);
-        Ok([smooth_at(law, &(middle + offset))?, smooth_at(law, &(middle - offset))?])
+    fn outer(&self) -> Result<[AtStrain<D>; 2], NotPositive> {
+        let law = self.law.smooth();
+        let middle = (self.ends[0] + self.ends[1]) * Four::of(0.5);
+        let offset = self.change * Four::of(OUTER);
+        Ok([AtStrain::new(&law, &(middle + offset))?, AtStrain::new(&law, &(middle - offset))?])
     }
 
     /// S*(E₊) + S*(E₋) − 2 S*(E_m), times the weight.
     #[inline(always)]
-    fn curvature(&self, outer: &[AtStrain<D, T, P>; 2]) -> Mat<D, T> {
+    fn curvature(&self, outer: &[AtStrain<D>; 2]) -> Mat<D, Four> {
         let smooth = self.smooth().stress;
         let above = outer[0].stress - smooth;
         let below = outer[1].stress - smooth;
-        (above + below) * T::of(WEIGHT)
+        (above + below) * Four::of(WEIGHT)
     }
 
     /// Whether there are points without a correction alone.
@@ -247,57 +220,62 @@ impl<const D: usize, T: Real, P> Path<D, T, P> {
     /// The way in which the work is computed at a point: by the difference of the energies in long
     /// steps, and where flow begins of which ψ is not known; by Gauss points elsewhere.
     #[inline(always)]
-    fn ways<L: Potential<D, T, Point = P>>(&self, law: &L, end: Option<&P>) -> Ways<T> {
-        let flows = |point: &P| law.released(point).find(|released| released > 0.0).is_some();
-        let is_unknown =
-            L::YIELDS && self.unevolved.is_none() && (flows(&self.middle.point) || end.is_some_and(flows));
-        let is_long = |square: f64| square > GAUSS || is_unknown;
+    fn ways(&self, end_released: Four) -> Ways {
+        let traits = self.law.law.traits();
+        let is_unknown = if traits.yields && !traits.splits {
+            (self.middle.released + end_released).map(|released| f64::from(released > 0.0))
+        } else {
+            Four::ZERO
+        };
+        let long = self.square.zip(
+            is_unknown,
+            #[inline(always)]
+            |square, is_unknown| f64::from(square > GAUSS || is_unknown > 0.0),
+        );
         Ways {
-            long: self.square.map(
-                #[inline(always)]
-                |square| f64::from(is_long(square)),
-            ),
-            has_long: self.square.find(is_long).is_some(),
-            has_short: self.square.find(|square| !is_long(square)).is_some(),
+            long,
+            has_long: long.find(|is_long| is_long > 0.0).is_some(),
+            has_short: long.find(|is_long| is_long == 0.0).is_some(),
         }
     }
 
     /// −(ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE.
     #[inline(always)]
-    fn released<L: Potential<D, T, Point = P>>(&self, law: &L, end: &P) -> Result<T, NotPositive> {
-        let Some(unevolved) = &self.unevolved else { return Ok(T::ZERO) };
-        let start = law.released(&law_at(law, &self.ends[0])?.point);
-        let flown = self.middle.stress - unevolved.stress;
-        Ok(start - law.released(end) - flown.double_dot(&self.change))
+    fn released(&self, end_released: Four) -> Result<Four, NotPositive> {
+        if !self.law.law.traits().splits {
+            return Ok(Four::ZERO);
+        }
+        let start = self.law.at(&root(&self.ends[0])?, &mut [])?.released;
+        let flown = self.middle.stress - self.smooth().stress;
+        Ok(start - end_released - flown.double_dot(&self.change))
     }
 
     /// The derivative of [`Self::released`] along dE.
     #[inline(always)]
-    fn released_change<L: Potential<D, T, Point = P>>(
-        &self,
-        law: &L,
-        end: &AtStrain<D, T, P>,
-        de: &Mat<D, T>,
-    ) -> Result<T, NotPositive> {
-        let Some(unevolved) = &self.unevolved else { return Ok(T::ZERO) };
-        let Some(end_unevolved) = law.unevolved(&end.point) else { return Ok(T::ZERO) };
-        let half = *de * T::of(0.5);
-        let end_flown = end.stress - end.replaced(law, end_unevolved).stress;
-        let flown = end_flown - (self.middle.stress - unevolved.stress);
-        let change = self.middle.change(law, &half)? - unevolved.change(law, &half)?;
+    fn released_change(&self, end: &AtStrain<D>, de: &Mat<D, Four>) -> Result<Four, NotPositive> {
+        let flows = end.flows() || self.unevolved.is_some();
+        if !flows || !self.law.law.traits().splits {
+            return Ok(Four::ZERO);
+        }
+        let smooth = self.law.smooth();
+        let half = *de * Four::of(0.5);
+        let end_flown = end.stress - AtStrain::new(&smooth, &self.ends[1])?.stress;
+        let flown = end_flown - (self.middle.stress - self.smooth().stress);
+        let change = self.middle.change(self.law, &half)? - self.smooth().change(&smooth, &half)?;
         Ok(flown.double_dot(de) - change.double_dot(&self.change))
     }
 
     /// W₁ − W₀ − S(E_m):ΔE as the difference of the energies.
     #[inline(always)]
-    fn difference<L: Potential<D, T, Point = P>>(&self, law: &L, end: &P) -> Result<T, NotPositive> {
+    fn difference(&self, end: Four) -> Result<Four, NotPositive> {
+        let start = self.law.at(&root(&self.ends[0])?, &mut [])?;
         let by_middle = self.middle.stress.double_dot(&self.change);
-        Ok(law.energy(end) - energy_at(law, &self.ends[0])? - by_middle)
+        Ok(end - (start.stored + start.dissipated) - by_middle)
     }
 
     /// x/(ΔE:ΔE) where there is a correction, and 0 elsewhere.
     #[inline(always)]
-    fn over_square(&self, x: T) -> T {
+    fn over_square(&self, x: Four) -> Four {
         (x / self.square).zip(
             self.square,
             #[inline(always)]
@@ -307,78 +285,75 @@ impl<const D: usize, T: Real, P> Path<D, T, P> {
 
     /// φ.
     #[inline(always)]
-    fn phi<L: Potential<D, T, Point = P>>(&self, law: &L, end: &P) -> Result<T, NotPositive> {
+    fn phi(&self, end: &AtFour<D>) -> Result<Four, NotPositive> {
         if self.is_plain() {
-            return Ok(T::ZERO);
+            return Ok(Four::ZERO);
         }
-        let ways = self.ways(law, Some(end));
-        let long = if ways.has_long { self.difference(law, end)? } else { T::ZERO };
+        let ways = self.ways(end.released);
+        let long = if ways.has_long { self.difference(end.stored + end.dissipated)? } else { Four::ZERO };
         let short = if ways.has_short {
-            self.curvature(&self.outer(law)?).double_dot(&self.change) + self.released(law, end)?
+            self.curvature(&self.outer()?).double_dot(&self.change) + self.released(end.released)?
         } else {
-            T::ZERO
+            Four::ZERO
         };
         Ok(self.over_square(ways.choose(long, short)))
     }
 
     /// φ and its derivative in the direction of a change dE of E₁.
     #[inline(always)]
-    fn phi_and_change<L: Potential<D, T, Point = P>>(
-        &self,
-        law: &L,
-        de: &Mat<D, T>,
-    ) -> Result<[T; 2], NotPositive> {
+    fn phi_and_change(&self, de: &Mat<D, Four>) -> Result<[Four; 2], NotPositive> {
         if self.is_plain() {
-            return Ok([T::ZERO, T::ZERO]);
+            return Ok([Four::ZERO, Four::ZERO]);
         }
-        let half = *de * T::of(0.5);
-        let needs_end = L::YIELDS || self.ways(law, None).has_long;
-        let end = if needs_end { Some(law_at(law, &self.ends[1])?) } else { None };
-        let ways = self.ways(law, end.as_ref().map(|end| &end.point));
+        let half = *de * Four::of(0.5);
+        let needs_end = self.law.law.traits().yields || self.ways(Four::ZERO).has_long;
+        let end = if needs_end { Some(AtStrain::new(self.law, &self.ends[1])?) } else { None };
+        let ways = self.ways(end.as_ref().map_or(Four::ZERO, |end| end.released));
         let long = match &end {
             Some(end) if ways.has_long => {
                 let by_stress = (end.stress - self.middle.stress).double_dot(de);
-                let middle_change = self.middle.change(law, &half)?;
-                [self.difference(law, &end.point)?, by_stress - middle_change.double_dot(&self.change)]
+                let middle_change = self.middle.change(self.law, &half)?;
+                [self.difference(end.energy)?, by_stress - middle_change.double_dot(&self.change)]
             }
-            _ => [T::ZERO, T::ZERO],
+            _ => [Four::ZERO, Four::ZERO],
         };
         let short = if ways.has_short {
-            let outer = self.outer(law)?;
+            let law = self.law.smooth();
+            let outer = self.outer()?;
             let curvature = self.curvature(&outer);
-            let middle = self.smooth().change(law, &half)?;
-            let above = outer[0].change(law, &(*de * T::of(0.5 + OUTER)))? - middle;
-            let below = outer[1].change(law, &(*de * T::of(0.5 - OUTER)))? - middle;
-            let curvature_change = (above + below) * T::of(WEIGHT);
+            let middle = self.smooth().change(&law, &half)?;
+            let above = outer[0].change(&law, &(*de * Four::of(0.5 + OUTER)))? - middle;
+            let below = outer[1].change(&law, &(*de * Four::of(0.5 - OUTER)))? - middle;
+            let curvature_change = (above + below) * Four::of(WEIGHT);
             let mut work = curvature.double_dot(&self.change);
             let mut change = curvature_change.double_dot(&self.change) + curvature.double_dot(de);
             if let Some(end) = &end {
-                work = work + self.released(law, &end.point)?;
-                change = change + self.released_change(law, end, de)?;
+                work = work + self.released(end.released)?;
+                change = change + self.released_change(end, de)?;
             }
             [work, change]
         } else {
-            [T::ZERO, T::ZERO]
+            [Four::ZERO, Four::ZERO]
         };
         let phi = self.over_square(ways.choose(long[0], short[0]));
         let excess_change = ways.choose(long[1], short[1]);
-        let change = excess_change - T::of(2.0) * phi * self.change.double_dot(de);
+        let change = excess_change - Four::of(2.0) * phi * self.change.double_dot(de);
         Ok([phi, self.over_square(change)])
     }
 }
 
 /// Which points have long steps.
-struct Ways<T> {
+struct Ways {
     /// 1 in long steps, and 0 in short ones.
-    long: T,
+    long: Four,
     has_long: bool,
     has_short: bool,
 }
 
-impl<T: Real> Ways<T> {
+impl Ways {
     /// The first number in long steps, the second one in short ones.
     #[inline(always)]
-    fn choose(&self, long: T, short: T) -> T {
+    fn choose(&self, long: Four, short: Four) -> Four {
         let long = self.long.zip(
             long,
             #[inline(always)]
@@ -394,14 +369,14 @@ impl<T: Real> Ways<T> {
 }
 
 #[inline(always)]
-fn symmetric<const D: usize, T: Real>(a: &Mat<D, T>) -> Mat<D, T> {
-    (*a + a.transposed()) * T::of(0.5)
+fn symmetric<const D: usize>(a: &Mat<D, Four>) -> Mat<D, Four> {
+    (*a + a.transposed()) * Four::of(0.5)
 }
 
 /// E = (H + Hᵀ + HᵀH)/2.
 #[inline(always)]
-fn strain<const D: usize, T: Real>(h: &Mat<D, T>) -> Mat<D, T> {
-    (*h + h.transposed() + h.transposed() * *h) * T::of(0.5)
+fn strain<const D: usize>(h: &Mat<D, Four>) -> Mat<D, Four> {
+    (*h + h.transposed() + h.transposed() * *h) * Four::of(0.5)
 }
 
 /// F̂ − I with F̂ upper triangular and F̂ᵀF̂ = I + 2E (Cholesky); √(1 + x) − 1 = x/(1 + √(1 + x))

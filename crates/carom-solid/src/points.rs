@@ -3,7 +3,7 @@
 //! Each lane is a point; lanes are added at the end, (0 + 1) + (2 + 3). The order of every sum is
 //! fixed, so results are bitwise equal on every machine.
 
-use carom_algebra::{Four, Mat, Vector};
+use carom_algebra::{Four, Mat, Vector, wide};
 
 /// Number of lanes: doubles in a register of 256 bits.
 pub const LANES: usize = 4;
@@ -49,53 +49,69 @@ impl<const D: usize, const N: usize> Points<D, N> {
         packed
     }
 
-    /// H = Σ uᵃ ⊗ ∇₀φᵃ with ∇₀φᵃ = Aᵀ∇φᵃ.
-    #[inline(always)]
+    /// H = Σ uᵃ ⊗ ∇₀φᵃ with ∇₀φᵃ = Aᵀ∇φᵃ. This and the following sums are compiled once for a
+    /// shape, for wide registers, not wherever they are called.
+    #[inline(never)]
     pub(crate) fn gradient(&self, u: &[Vector<D>; N], a: &Mat<D>) -> Mats<D> {
-        let mut h = [[[0.0; LANES]; D]; D];
-        for n in 0..N {
-            for i in 0..D {
-                for j in 0..D {
-                    add_product(&mut h[i][j], &[u[n][i]; LANES], &self.gradients[n][j]);
+        wide(
+            #[inline(always)]
+            || {
+                let mut h = [[[0.0; LANES]; D]; D];
+                for n in 0..N {
+                    for i in 0..D {
+                        for j in 0..D {
+                            add_product(&mut h[i][j], &[u[n][i]; LANES], &self.gradients[n][j]);
+                        }
+                    }
                 }
-            }
-        }
-        times(&h, a)
+                times(&h, a)
+            },
+        )
     }
 
     /// fᵃ += P Aᵀ∇φᵃ, with stresses multiplied by the weight.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn add_force(&self, stress: &Mats<D>, a: &Mat<D>, force: &mut [[Lanes; D]; N]) {
-        let stress = times(stress, &a.transposed());
-        for n in 0..N {
-            for i in 0..D {
-                for j in 0..D {
-                    add_product(&mut force[n][i], &stress[i][j], &self.gradients[n][j]);
+        wide(
+            #[inline(always)]
+            || {
+                let stress = times(stress, &a.transposed());
+                for n in 0..N {
+                    for i in 0..D {
+                        for j in 0..D {
+                            add_product(&mut force[n][i], &stress[i][j], &self.gradients[n][j]);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
     }
 
     /// Kᵐⁿ += ∂P/∂F : Aᵀ∇φᵐ Aᵀ∇φⁿ, with moduli multiplied by the weight. K is bilinear in the
     /// gradients: the law is evaluated for unit vectors only.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn add_tangent(&self, moduli: &[[Mats<D>; D]; D], a: &Mat<D>, blocks: &mut Blocks<D, N>) {
-        let moduli = pulled_back(moduli, a);
-        for n in 0..N {
-            let mut half = [[[[0.0; LANES]; D]; D]; D];
-            for j in 0..D {
-                for l in 0..D {
-                    add_products(&mut half[j], &moduli[j][l], &self.gradients[n][l]);
+        wide(
+            #[inline(always)]
+            || {
+                let moduli = pulled_back(moduli, a);
+                for n in 0..N {
+                    let mut half = [[[[0.0; LANES]; D]; D]; D];
+                    for j in 0..D {
+                        for l in 0..D {
+                            add_products(&mut half[j], &moduli[j][l], &self.gradients[n][l]);
+                        }
+                    }
+                    for m in 0..=n {
+                        let mut block = blocks[n][m];
+                        for j in 0..D {
+                            add_products(&mut block, &half[j], &self.gradients[m][j]);
+                        }
+                        blocks[n][m] = block;
+                    }
                 }
-            }
-            for m in 0..=n {
-                let mut block = blocks[n][m];
-                for j in 0..D {
-                    add_products(&mut block, &half[j], &self.gradients[m][j]);
-                }
-                blocks[n][m] = block;
-            }
-        }
+            },
+        );
     }
 }
 

@@ -1,115 +1,42 @@
-//! Potentials of which a discrete gradient is formed: a law at one point, or at four points at
-//! once.
+//! Potentials of which a discrete gradient is formed: a law at up to four points, with what they
+//! remember.
+//!
+//! With the memory at the start of a step and the length of the step fixed, the response of a law
+//! with memory to F is that of a hyperelastic law with the incremental potential ΔW. The discrete
+//! gradient P̄ of ΔW between the ends of a step has P̄:ΔF = ΔW(F₁) − ΔW(F₀). Where nothing evolves
+//! at F₀, as of laws that do not depend on rates, this is the change of the stored energy and what
+//! is dissipated.
 
-use carom_algebra::{Four, Mat, Real};
+use carom_algebra::{Four, Mat};
 
-use crate::material::{Material, NotPositive};
-use crate::points::{LANES, four, lanes};
+use crate::material::{AtFour, NotPositive, Past, Pointwise};
+use crate::points::{four, lanes};
 
-/// A potential W(F) at one point, or at four points at once.
-pub(crate) trait Potential<const D: usize, T: Real> {
-    /// Whether W depends on FᵀF alone; otherwise it is quadratic in H.
-    const OBJECTIVE: bool;
-
-    /// Whether W lacks a second derivative where flow begins.
-    const YIELDS: bool;
-
-    /// Kinematics.
-    type Point;
-
-    fn at(&self, h: &Mat<D, T>) -> Result<Self::Point, NotPositive>;
-
-    fn energy(&self, point: &Self::Point) -> T;
-
-    fn stress(&self, point: &Self::Point) -> Mat<D, T>;
-
-    fn change(&self, point: &Self::Point, df: &Mat<D, T>) -> Result<Mat<D, T>, NotPositive>;
-
-    /// [`Material::unevolved`].
-    #[inline(always)]
-    fn unevolved(&self, _: &Self::Point) -> Option<Self::Point> {
-        None
-    }
-
-    /// [`Material::released`].
-    #[inline(always)]
-    fn released(&self, _: &Self::Point) -> T {
-        T::ZERO
-    }
+/// A law at the first `count` of four points.
+#[derive(Clone, Copy)]
+pub(crate) struct Potential<'a, const D: usize> {
+    pub(crate) law: &'a dyn Pointwise<D>,
+    pub(crate) past: Past<'a>,
+    pub(crate) count: usize,
 }
 
-/// A law at one point.
-pub(crate) struct Single<'a, L>(pub(crate) &'a L);
-
-impl<const D: usize, L: Material<D>> Potential<D, f64> for Single<'_, L> {
-    const OBJECTIVE: bool = L::OBJECTIVE;
-    const YIELDS: bool = L::YIELDS;
-    type Point = L::Point;
-
+impl<const D: usize> Potential<'_, D> {
+    /// The smooth part: without flow in the step, where that is known.
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<L::Point, NotPositive> {
-        self.0.at(h)
+    pub(crate) fn smooth(&self) -> Self {
+        let frozen = self.law.traits().splits;
+        Self { past: Past { frozen, ..self.past }, ..*self }
     }
 
+    /// The law at H; overwrites the memory, unless it is empty.
     #[inline(always)]
-    fn energy(&self, point: &L::Point) -> f64 {
-        self.0.energy(point)
+    pub(crate) fn at(&self, h: &Mat<D, Four>, memory: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
+        self.law.stresses(&lanes(h), &self.past, self.count, memory)
     }
 
+    /// ∂P/∂F : dF at H.
     #[inline(always)]
-    fn stress(&self, point: &L::Point) -> Mat<D> {
-        self.0.stress(point)
-    }
-
-    #[inline(always)]
-    fn change(&self, point: &L::Point, df: &Mat<D>) -> Result<Mat<D>, NotPositive> {
-        Ok(self.0.change(point, df))
-    }
-
-    #[inline(always)]
-    fn unevolved(&self, point: &L::Point) -> Option<L::Point> {
-        self.0.unevolved(point)
-    }
-
-    #[inline(always)]
-    fn released(&self, point: &L::Point) -> f64 {
-        self.0.released(point)
-    }
-}
-
-/// A law that is written for four points ([`Material::FOUR`]), at four points.
-pub(crate) struct AtFour<'a, L>(pub(crate) &'a L);
-
-/// H, Ψ and P.
-pub(crate) struct PointsOfFour<const D: usize> {
-    h: Mat<D, Four>,
-    energy: Four,
-    stress: Mat<D, Four>,
-}
-
-impl<const D: usize, L: Material<D>> Potential<D, Four> for AtFour<'_, L> {
-    const OBJECTIVE: bool = L::OBJECTIVE;
-    const YIELDS: bool = false;
-    type Point = PointsOfFour<D>;
-
-    #[inline(always)]
-    fn at(&self, h: &Mat<D, Four>) -> Result<PointsOfFour<D>, NotPositive> {
-        let (energy, stress) = self.0.at_four(h)?;
-        Ok(PointsOfFour { h: *h, energy, stress })
-    }
-
-    #[inline(always)]
-    fn energy(&self, point: &PointsOfFour<D>) -> Four {
-        point.energy
-    }
-
-    #[inline(always)]
-    fn stress(&self, point: &PointsOfFour<D>) -> Mat<D, Four> {
-        point.stress
-    }
-
-    #[inline(always)]
-    fn change(&self, point: &PointsOfFour<D>, df: &Mat<D, Four>) -> Result<Mat<D, Four>, NotPositive> {
-        Ok(four(&self.0.changes(&lanes(&point.h), &lanes(df), LANES)?))
+    pub(crate) fn change(&self, h: &Mat<D, Four>, dh: &Mat<D, Four>) -> Result<Mat<D, Four>, NotPositive> {
+        Ok(four(&self.law.increments(&lanes(h), &lanes(dh), &self.past, self.count)?))
     }
 }

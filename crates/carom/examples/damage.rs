@@ -26,7 +26,7 @@ impl<const D: usize> Material<D> for Damage {
     type Point = Damaged<<NeoHookean as Material<D>>::Point>;
 
     fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
-        self.after(h, &Past { memory: &[0.0], dt: 0.0 })
+        self.after(h, &Past::new(&[0.0], 0.0))
     }
 
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {

@@ -114,7 +114,7 @@ impl Probe {
 pub fn past_of<'a>(parts: &[BodyInstance], part: usize, memory: &'a [f64]) -> Past<'a> {
     let first: usize = parts[..part].iter().map(BodyInstance::memory).sum();
     let memory = memory.get(first..first + parts[part].memory()).unwrap_or(&[]);
-    Past { memory, dt: 0.0 }
+    Past::new(memory, 0.0)
 }
 
 fn is_stress(quantity: Quantity) -> bool {

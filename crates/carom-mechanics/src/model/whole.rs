@@ -169,7 +169,7 @@ impl Model {
         let mut rest = at.past.memory;
         self.parts.iter().map(move |part| {
             let memory = rest.split_off(..part.memory().min(rest.len())).unwrap_or_default();
-            let past = Past { memory, dt: at.past.dt };
+            let past = Past::new(memory, at.past.dt);
             (part, Configuration { before: at.before.map(|y| part.of(y)), y: part.of(at.y), past })
         })
     }

@@ -46,7 +46,7 @@ pub struct Point {
 impl Point {
     /// Where the internal tangent is computed.
     pub(crate) fn configuration(&self) -> Configuration<'_> {
-        Configuration { before: None, y: &self.at, past: Past { memory: &self.memory, dt: self.dt } }
+        Configuration { before: None, y: &self.at, past: Past::new(&self.memory, self.dt) }
     }
 }
 

@@ -39,7 +39,7 @@ impl<const D: usize> Material<D> for Damage {
     type Point = Damaged<<LinearElastic as Material<D>>::Point>;
 
     fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
-        Material::<D>::after(self, h, &Past { memory: &[0.0], dt: 0.0 })
+        Material::<D>::after(self, h, &Past::new(&[0.0], 0.0))
     }
 
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {

@@ -65,7 +65,6 @@ impl Hencky {
 }
 
 impl<const D: usize> Material<D> for Hencky {
-    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -79,7 +78,7 @@ impl<const D: usize> Material<D> for Hencky {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = self.kinematics(h)?;
         Ok((point.energy, point.of.stress()))
     }

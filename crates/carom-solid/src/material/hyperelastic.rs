@@ -1,6 +1,6 @@
 //! The interface of a hyperelastic law.
 
-use carom_algebra::{Four, Mat, Vector};
+use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::kinematics::{NotPositive, excess_det};
 use super::past::Past;
@@ -9,17 +9,24 @@ use crate::points::{LANES, four, get, lanes, set};
 /// A matrix at each of four points: `[i][j][point]`.
 pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];
 
-/// Ψ and P at each of four points.
-pub type AtPoints<const D: usize> = ([f64; LANES], InLanes<D>);
-
-/// A step at each of four points of a law with memory.
-pub struct FourAfter<const D: usize> {
+/// A law at each of four points; the last two are zero without a memory.
+pub struct AtFour<const D: usize> {
     /// Ψ.
     pub stored: Four,
-    /// [`Material::dissipated`].
-    pub dissipated: Four,
     /// P.
     pub stress: Mat<D, Four>,
+    /// [`Material::dissipated`].
+    pub dissipated: Four,
+    /// [`Material::released`].
+    pub released: Four,
+}
+
+impl<const D: usize> AtFour<D> {
+    /// At points where nothing evolves.
+    #[inline(always)]
+    pub fn elastic(stored: Four, stress: Mat<D, Four>) -> Self {
+        Self { stored, stress, dissipated: Four::ZERO, released: Four::ZERO }
+    }
 }
 
 /// A hyperelastic law. [`Material::at`] computes common terms once. `at`, `energy`, `stress` and
@@ -31,8 +38,8 @@ pub struct FourAfter<const D: usize> {
 /// in the step; the stress is ∂ΔW/∂F. What an objective one remembers does not depend on the
 /// rotation in F: discrete gradients evaluate it at the strain. It states [`Material::MEMORY`],
 /// [`Material::after`], [`Material::remember`] and [`Material::dissipated`]; others need none of
-/// these. One that yields adds [`Material::YIELDS`], [`Material::unevolved`] and
-/// [`Material::released`].
+/// these. One that yields adds [`Material::YIELDS`] and [`Material::released`], and
+/// [`Material::SPLITS`] where it can.
 pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize = 0;
@@ -46,9 +53,9 @@ pub trait Material<const D: usize>: Send + Sync {
     /// Whether ΔW lacks a second derivative where flow begins within a step.
     const YIELDS: bool = false;
 
-    /// Whether its formulas are written for any number: [`Material::at_four`] evaluates four points
-    /// at once.
-    const FOUR: bool = false;
+    /// Whether ΔW of a law that yields is a smooth function less [`Material::released`], and
+    /// [`Past::frozen`] gives that function.
+    const SPLITS: bool = false;
 
     /// Kinematics at a point.
     type Point;
@@ -70,15 +77,9 @@ pub trait Material<const D: usize>: Send + Sync {
         0.0
     }
 
-    /// The point of a law that yields as if nothing evolved in the step, if it is known with
-    /// [`Material::released`].
-    #[inline(always)]
-    fn unevolved(&self, _: &Self::Point) -> Option<Self::Point> {
-        None
-    }
-
-    /// Energy by which ΔW is below that of [`Material::unevolved`], zero without flow; not as their
-    /// difference, which would consist of round-off for small steps.
+    /// Energy by which ΔW of a law that yields is below that of the same law without flow, zero if
+    /// and only if there is no flow; not as their difference, which would consist of round-off for
+    /// small steps.
     #[inline(always)]
     fn released(&self, _: &Self::Point) -> f64 {
         0.0
@@ -98,22 +99,19 @@ pub trait Material<const D: usize>: Send + Sync {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
-    /// Ψ and P at four points at once.
+    /// Ψ and P at the first `count` of four points; H = 0 in the other lanes, whose results do not
+    /// count. A law whose formulas are written for any number evaluates four points at once.
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
-        let (energies, stresses) = one_by_one(self, &lanes(h), LANES)?;
-        Ok((Four(energies), four(&stresses)))
-    }
-
-    /// Ψ and P at the first `count` of four points, in lanes; H = 0 in the
-    /// other lanes, whose results do not count.
-    #[inline(always)]
-    fn at_points(&self, h: &InLanes<D>, count: usize) -> Result<AtPoints<D>, NotPositive> {
-        if Self::FOUR {
-            let (energy, stress) = self.at_four(&four(h))?;
-            return Ok((energy.0, lanes(&stress)));
+    fn at_four(&self, h: &Mat<D, Four>, count: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+        let h = lanes(h);
+        let mut energy = Four::ZERO;
+        let mut stress = [[[0.0; LANES]; D]; D];
+        for l in 0..count {
+            let point = self.at(&get(&h, l))?;
+            energy.0[l] = self.energy(&point);
+            set(&mut stress, l, &self.stress(&point));
         }
-        one_by_one(self, h, count)
+        Ok((energy, four(&stress)))
     }
 
     /// ∂P/∂F : dF.
@@ -149,17 +147,32 @@ pub trait Material<const D: usize>: Send + Sync {
         Ok(changes)
     }
 
-    /// A step at four points at once, of a law with memory whose formulas are written for any
-    /// number; none of others. Overwrites the memory of the points with that at the end of the
-    /// step, unless that slice is empty. Of fewer points, H = 0 in the other lanes.
+    /// A step at the first `count` of four points of a law with memory; H = 0 in the other lanes.
+    /// Overwrites the memory of the points with that at the end of the step, unless that slice is
+    /// empty. A law whose formulas are written for any number evaluates four points at once.
     #[inline(always)]
     fn after_four(
         &self,
-        _: &Mat<D, Four>,
-        _: &Past,
-        _: &mut [f64],
-    ) -> Result<Option<FourAfter<D>>, NotPositive> {
-        Ok(None)
+        h: &Mat<D, Four>,
+        past: &Past,
+        count: usize,
+        memory: &mut [f64],
+    ) -> Result<AtFour<D>, NotPositive> {
+        let h = lanes(h);
+        let mut out = AtFour::elastic(Four::ZERO, Mat::ZERO);
+        let mut stress = [[[0.0; LANES]; D]; D];
+        let mut memories = memory.chunks_exact_mut(Self::MEMORY.max(1));
+        for l in 0..count {
+            let point = self.after(&get(&h, l), &past.part(l, Self::MEMORY))?;
+            out.stored.0[l] = self.energy(&point);
+            out.dissipated.0[l] = self.dissipated(&point);
+            out.released.0[l] = self.released(&point);
+            set(&mut stress, l, &self.stress(&point));
+            if let Some(memory) = memories.next() {
+                self.remember(&point, memory);
+            }
+        }
+        Ok(AtFour { stress: four(&stress), ..out })
     }
 
     /// [`Material::changes`] from the memory of the points at the start of a step.
@@ -201,21 +214,4 @@ pub trait Material<const D: usize>: Send + Sync {
     fn volume_ratio(&self, h: &Mat<D>, _: &Past) -> f64 {
         1.0 + excess_det(h)
     }
-}
-
-/// Ψ and P at the first `count` of four points, one after the other.
-#[inline(always)]
-fn one_by_one<const D: usize, L: Material<D> + ?Sized>(
-    law: &L,
-    h: &InLanes<D>,
-    count: usize,
-) -> Result<AtPoints<D>, NotPositive> {
-    let mut energies = [0.0; LANES];
-    let mut stresses = [[[0.0; LANES]; D]; D];
-    for l in 0..count {
-        let point = law.at(&get(h, l))?;
-        energies[l] = law.energy(&point);
-        set(&mut stresses, l, &law.stress(&point));
-    }
-    Ok((energies, stresses))
 }

@@ -25,7 +25,7 @@ use carom_algebra::{Four, Mat, Real};
 
 use super::hardening::{Flow, Hardening};
 use super::hencky::Hencky;
-use super::hyperelastic::{FourAfter, InLanes, Material};
+use super::hyperelastic::{AtFour, InLanes, Material};
 use super::kinematics::exp_m1;
 use super::past::Past;
 use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
@@ -150,9 +150,10 @@ impl J2 {
         &self,
         h: &Mat<D, T>,
         start: Remembered<D, T>,
+        past: &Past,
     ) -> Result<Point<D, T>, NotPositive> {
         let frame = PrincipalFrame::new(h, Some(&start.plastic), start.across)?;
-        Ok(self.respond(frame, start, true))
+        Ok(self.respond(frame, start, !past.frozen))
     }
 
     /// Energy that is dissipated in the step.
@@ -213,15 +214,16 @@ impl J2 {
 impl<const D: usize> Material<D> for J2 {
     const MEMORY: usize = components(D) + 1;
     const YIELDS: bool = true;
+    const SPLITS: bool = true;
     type Point = Point<D>;
 
     fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
-        self.after(h, &Past { memory: &[0.0; MOST][..=components(D)], dt: 0.0 })
+        self.after(h, &Past::new(&[0.0; MOST][..=components(D)], 0.0))
     }
 
     #[inline(always)]
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point<D>, NotPositive> {
-        self.kinematics(h, Remembered::read(|k| past.memory[k]))
+        self.kinematics(h, Remembered::read(|k| past.memory[k]), past)
     }
 
     #[inline(always)]
@@ -234,11 +236,12 @@ impl<const D: usize> Material<D> for J2 {
         &self,
         h: &Mat<D, Four>,
         past: &Past,
+        _: usize,
         memory: &mut [f64],
-    ) -> Result<Option<FourAfter<D>>, NotPositive> {
+    ) -> Result<AtFour<D>, NotPositive> {
         let size = <Self as Material<D>>::MEMORY;
         let start = Remembered::read(|k| four_of(past.memory, size, k));
-        let point = self.kinematics(h, start)?;
+        let point = self.kinematics(h, start, past)?;
         if !memory.is_empty() {
             point.end().write(
                 #[inline(always)]
@@ -249,7 +252,12 @@ impl<const D: usize> Material<D> for J2 {
                 },
             );
         }
-        Ok(Some(FourAfter { stored: point.stored, dissipated: self.lost(&point), stress: point.of.stress() }))
+        Ok(AtFour {
+            stored: point.stored,
+            stress: point.of.stress(),
+            dissipated: self.lost(&point),
+            released: point.released,
+        })
     }
 
     #[inline(always)]
@@ -262,7 +270,7 @@ impl<const D: usize> Material<D> for J2 {
     ) -> Result<InLanes<D>, NotPositive> {
         let size = <Self as Material<D>>::MEMORY;
         let start = Remembered::read(|k| four_of(past.memory, size, k));
-        let point = self.kinematics(&four(h), start)?;
+        let point = self.kinematics(&four(h), start, past)?;
         Ok(lanes(&point.of.change(&four(dh))))
     }
 
@@ -273,11 +281,6 @@ impl<const D: usize> Material<D> for J2 {
 
     fn plastic_strain(&self, memory: &[f64]) -> f64 {
         memory.get(components(D)).copied().unwrap_or(0.0)
-    }
-
-    #[inline(always)]
-    fn unevolved(&self, p: &Point<D>) -> Option<Point<D>> {
-        Some(self.respond(p.of.frame, p.start, false))
     }
 
     #[inline(always)]

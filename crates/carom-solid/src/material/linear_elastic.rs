@@ -38,7 +38,6 @@ fn strain_of<const D: usize, T: Real>(h: &Mat<D, T>) -> Mat<D, T> {
 impl<const D: usize> Material<D> for LinearElastic {
     const ENERGY_DEGREE: usize = 2;
     const OBJECTIVE: bool = false;
-    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -57,7 +56,7 @@ impl<const D: usize> Material<D> for LinearElastic {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let strain = strain_of(h);
         let stress = self.stress_of(&strain);
         Ok((Four::of(0.5) * stress.double_dot(&strain), stress))

@@ -83,7 +83,6 @@ impl NeoHookean {
 }
 
 impl<const D: usize> Material<D> for NeoHookean {
-    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -102,7 +101,7 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = Self::kinematics(h)?;
         Ok((self.energy_of(&point), self.stress_of(&point)))
     }

@@ -1,5 +1,7 @@
 //! What materials remember.
 
+use std::ops::Range;
+
 /// What materials remember at the start of a step, and the length of the step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Past<'a> {
@@ -7,12 +9,24 @@ pub struct Past<'a> {
     pub memory: &'a [f64],
     /// Δt.
     pub dt: f64,
+    /// Whether the response is asked for as if nothing evolved in the step
+    /// ([`Material::SPLITS`](super::Material::SPLITS)).
+    pub frozen: bool,
 }
 
-impl Past<'_> {
+impl<'a> Past<'a> {
+    /// From the memory at the start of a step and the length of the step.
+    pub fn new(memory: &'a [f64], dt: f64) -> Self {
+        Self { memory, dt, frozen: false }
+    }
+
     /// The memory of one of many points or cells with `size` numbers each.
     pub(crate) fn part(&self, index: usize, size: usize) -> Self {
-        let memory = self.memory.get(index * size..(index + 1) * size).unwrap_or(&[]);
-        Self { memory, dt: self.dt }
+        self.within(&(index * size..(index + 1) * size))
+    }
+
+    /// Some of the numbers.
+    pub(crate) fn within(&self, range: &Range<usize>) -> Self {
+        Self { memory: self.memory.get(range.clone()).unwrap_or(&[]), ..*self }
     }
 }

@@ -4,74 +4,63 @@
 //! what it computes, and compiling every law into the loops of every shape took two thirds of the
 //! time for compiling this crate.
 
-use carom_algebra::{Mat, Vector, wide};
+use carom_algebra::{Four, Mat, Real, Vector, wide};
 
-use super::memory::Incremental;
+use super::hyperelastic::AtFour;
 use super::past::Past;
 use super::{Material, NotPositive};
 use crate::body::PointState;
-use crate::discrete_gradient::{between, change_between};
-use crate::points::{LANES, Lanes, Mats, four, get, lanes, set};
-use crate::potential::{AtFour, Potential, Single};
+use crate::points::{LANES, Lanes, Mats, four, get, set};
 
 /// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
 pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
 
-/// A step of points of a law with memory.
-pub(crate) struct Evolution<'a, const D: usize> {
-    /// H at the start of the step, for a discrete gradient.
-    pub(crate) before: Option<Mats<D>>,
-    pub(crate) h: Mats<D>,
-    pub(crate) count: usize,
-    /// Memory of the points, one after the other.
-    pub(crate) past: Past<'a>,
-    /// dF, where ∂P/∂F : dF is asked for in place of P.
-    pub(crate) change: Option<Mats<D>>,
-}
-
-/// Results of a step of points of a law with memory.
-pub(crate) struct Evolved<'a, const D: usize> {
-    /// Ψ; not of an increment.
-    pub(crate) stored: Lanes,
-    /// [`Material::dissipated`]; not of an increment.
-    pub(crate) dissipated: Lanes,
-    /// P, its discrete gradient, or the increment of either.
-    pub(crate) stress: Mats<D>,
-    /// ∂P/∂F, if it is asked for.
-    pub(crate) moduli: Option<&'a mut ModuliMats<D>>,
-    /// Memory at the end of the step; not asked for if empty.
-    pub(crate) memory: &'a mut [f64],
+/// Properties of a law that discrete gradients depend on.
+#[derive(Clone, Copy)]
+pub(crate) struct Traits {
+    /// [`Material::OBJECTIVE`].
+    pub(crate) objective: bool,
+    /// [`Material::YIELDS`].
+    pub(crate) yields: bool,
+    /// [`Material::SPLITS`].
+    pub(crate) splits: bool,
 }
 
 /// A [`Material`] at the first `count` of four points; H = 0 in the other lanes, whose results do
-/// not count.
+/// not count. Memories of the points follow each other; those at the end of a step are not asked
+/// for if that slice is empty. Of a law without memory, all memories are empty.
 pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::ENERGY_DEGREE`].
     fn energy_degree(&self) -> usize;
 
-    /// Ψ and P.
-    fn stresses(&self, h: &Mats<D>, count: usize, stress: &mut Mats<D>) -> Result<Lanes, NotPositive>;
+    /// What discrete gradients depend on.
+    fn traits(&self) -> Traits;
 
-    /// Ψ, P and ∂P/∂F.
+    /// Energies and P.
+    fn stresses(
+        &self,
+        h: &Mats<D>,
+        past: &Past,
+        count: usize,
+        memory: &mut [f64],
+    ) -> Result<AtFour<D>, NotPositive>;
+
+    /// Energies, P and ∂P/∂F.
     fn tangents(
         &self,
         h: &Mats<D>,
+        past: &Past,
         count: usize,
-        stress: &mut Mats<D>,
+        memory: &mut [f64],
         moduli: &mut ModuliMats<D>,
-    ) -> Result<Lanes, NotPositive>;
+    ) -> Result<AtFour<D>, NotPositive>;
 
     /// ∂P/∂F : dF.
-    fn increments(&self, h: &Mats<D>, dh: &Mats<D>, count: usize) -> Result<Mats<D>, NotPositive>;
-
-    /// Ψ at the end, and the discrete gradient between two configurations.
-    fn between(&self, h: [&Mats<D>; 2], count: usize, stress: &mut Mats<D>) -> Result<Lanes, NotPositive>;
-
-    /// Its derivative along an increment of the second.
-    fn increments_between(
+    fn increments(
         &self,
-        h: [&Mats<D>; 2],
+        h: &Mats<D>,
         dh: &Mats<D>,
+        past: &Past,
         count: usize,
     ) -> Result<Mats<D>, NotPositive>;
 
@@ -80,9 +69,6 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
 
     /// [`Material::plastic_strain`].
     fn plastic_strain_of(&self, memory: &[f64]) -> f64;
-
-    /// A step of a law with memory.
-    fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive>;
 
     /// Kinematics and stress.
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive>;
@@ -97,22 +83,30 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     fn divergence(&self, h: &Mat<D>, second: &[f64]) -> Result<Vector<D>, NotPositive>;
 }
 
-const fn none<const D: usize>() -> Mats<D> {
-    [[[0.0; LANES]; D]; D]
-}
-
 impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     fn energy_degree(&self) -> usize {
         L::ENERGY_DEGREE
     }
 
-    fn stresses(&self, h: &Mats<D>, count: usize, stress: &mut Mats<D>) -> Result<Lanes, NotPositive> {
+    fn traits(&self) -> Traits {
+        Traits { objective: L::OBJECTIVE, yields: L::YIELDS, splits: L::SPLITS }
+    }
+
+    fn stresses(
+        &self,
+        h: &Mats<D>,
+        past: &Past,
+        count: usize,
+        memory: &mut [f64],
+    ) -> Result<AtFour<D>, NotPositive> {
         wide(
             #[inline(always)]
             || {
-                let (energies, stresses) = self.at_points(h, count)?;
-                *stress = stresses;
-                Ok(energies)
+                if const { L::MEMORY > 0 } {
+                    return self.after_four(&four(h), past, count, memory);
+                }
+                let (stored, stress) = self.at_four(&four(h), count)?;
+                Ok(AtFour::elastic(stored, stress))
             },
         )
     }
@@ -120,76 +114,51 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     fn tangents(
         &self,
         h: &Mats<D>,
+        past: &Past,
         count: usize,
-        stress: &mut Mats<D>,
+        memory: &mut [f64],
         moduli: &mut ModuliMats<D>,
-    ) -> Result<Lanes, NotPositive> {
+    ) -> Result<AtFour<D>, NotPositive> {
         wide(
             #[inline(always)]
             || {
-                let mut energies = [0.0; LANES];
+                let mut out = AtFour::elastic(Four::ZERO, Mat::ZERO);
+                let mut stress = [[[0.0; LANES]; D]; D];
+                let mut memories = memory.chunks_exact_mut(L::MEMORY.max(1));
                 let unit = Mat::<D>::identity().0.map(Vector);
                 for l in 0..count {
-                    let point = self.at(&get(h, l))?;
-                    energies[l] = self.energy(&point);
-                    set(stress, l, &self.stress(&point));
+                    let point = self.after(&get(h, l), &past.part(l, L::MEMORY))?;
+                    out.stored.0[l] = self.energy(&point);
+                    out.dissipated.0[l] = self.dissipated(&point);
+                    set(&mut stress, l, &self.stress(&point));
+                    if let Some(memory) = memories.next() {
+                        self.remember(&point, memory);
+                    }
                     for (row, a) in moduli.iter_mut().zip(&unit) {
                         for (block, b) in row.iter_mut().zip(&unit) {
                             set(block, l, &self.tangent(&point, a, b));
                         }
                     }
                 }
-                Ok(energies)
+                Ok(AtFour { stress: four(&stress), ..out })
             },
         )
     }
 
-    fn increments(&self, h: &Mats<D>, dh: &Mats<D>, count: usize) -> Result<Mats<D>, NotPositive> {
-        wide(
-            #[inline(always)]
-            || self.changes(h, dh, count),
-        )
-    }
-
-    fn between(&self, h: [&Mats<D>; 2], count: usize, stress: &mut Mats<D>) -> Result<Lanes, NotPositive> {
-        wide(
-            #[inline(always)]
-            || {
-                if const { L::FOUR } {
-                    let law = AtFour(self);
-                    let found = between(&law, h.map(four).each_ref())?;
-                    *stress = lanes(&found.stress);
-                    return Ok(law.energy(&found.end).0);
-                }
-                let mut energies = [0.0; LANES];
-                for l in 0..count {
-                    let found = between(&Single(self), h.map(|h| get(h, l)).each_ref())?;
-                    energies[l] = self.energy(&found.end);
-                    set(stress, l, &found.stress);
-                }
-                Ok(energies)
-            },
-        )
-    }
-
-    fn increments_between(
+    fn increments(
         &self,
-        h: [&Mats<D>; 2],
+        h: &Mats<D>,
         dh: &Mats<D>,
+        past: &Past,
         count: usize,
     ) -> Result<Mats<D>, NotPositive> {
         wide(
             #[inline(always)]
             || {
-                if const { L::FOUR } {
-                    return Ok(lanes(&change_between(&AtFour(self), h.map(four).each_ref(), &four(dh))?));
+                if const { L::MEMORY > 0 } {
+                    return self.changes_after(h, dh, past, count);
                 }
-                let mut changes = none();
-                for l in 0..count {
-                    let ends = h.map(|h| get(h, l));
-                    set(&mut changes, l, &change_between(&Single(self), ends.each_ref(), &get(dh, l))?);
-                }
-                Ok(changes)
+                self.changes(h, dh, count)
             },
         )
     }
@@ -200,26 +169,6 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
 
     fn plastic_strain_of(&self, memory: &[f64]) -> f64 {
         self.plastic_strain(memory)
-    }
-
-    fn evolve(&self, step: &Evolution<D>, out: &mut Evolved<D>) -> Result<(), NotPositive> {
-        // A law without memory does not evolve: the body asks for its stresses instead.
-        if const { L::MEMORY == 0 } {
-            return Ok(());
-        }
-        wide(
-            #[inline(always)]
-            || {
-                if evolve_at_once(self, step, out)? {
-                    return Ok(());
-                }
-                for l in 0..step.count {
-                    let law = Incremental { law: self, past: step.past.part(l, L::MEMORY) };
-                    evolve_point(&law, step, l, out)?;
-                }
-                Ok(())
-            },
-        )
     }
 
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive> {
@@ -260,71 +209,6 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         }
         Ok(sum)
     }
-}
-
-/// Increments of forces at all points of a block, or the forces of a law that is written for four
-/// points; not of a discrete gradient, nor with a tangent. Returns whether it was done.
-#[inline(always)]
-fn evolve_at_once<const D: usize, L: Material<D>>(
-    law: &L,
-    step: &Evolution<D>,
-    out: &mut Evolved<D>,
-) -> Result<bool, NotPositive> {
-    if step.before.is_some() || out.moduli.is_some() {
-        return Ok(false);
-    }
-    if let Some(change) = &step.change {
-        out.stress = law.changes_after(&step.h, change, &step.past, step.count)?;
-        return Ok(true);
-    }
-    let Some(four) = law.after_four(&four(&step.h), &step.past, out.memory)? else {
-        return Ok(false);
-    };
-    out.stored = four.stored.0;
-    out.dissipated = four.dissipated.0;
-    out.stress = lanes(&four.stress);
-    Ok(true)
-}
-
-/// A step of one point of a law with memory. Of a discrete gradient everything is a function of the
-/// strains at both ends, what the point remembers included.
-#[inline(always)]
-fn evolve_point<const D: usize, L: Material<D>>(
-    law: &Incremental<L>,
-    step: &Evolution<D>,
-    l: usize,
-    out: &mut Evolved<D>,
-) -> Result<(), NotPositive> {
-    let h = get(&step.h, l);
-    let before = step.before.as_ref().map(|before| get(before, l));
-    if let (Some(before), Some(change)) = (&before, &step.change) {
-        set(&mut out.stress, l, &change_between(&Single(law), [before, &h], &get(change, l))?);
-        return Ok(());
-    }
-    let end = if let Some(before) = &before {
-        let found = between(&Single(law), [before, &h])?;
-        set(&mut out.stress, l, &found.stress);
-        found.end
-    } else {
-        let point = law.at(&h)?;
-        set(&mut out.stress, l, &law.stress(&point));
-        point
-    };
-    out.stored[l] = law.law.energy(&end);
-    out.dissipated[l] = law.law.dissipated(&end);
-    if !out.memory.is_empty() {
-        law.law.remember(&end, &mut out.memory[l * L::MEMORY..(l + 1) * L::MEMORY]);
-    }
-    if let Some(moduli) = &mut out.moduli {
-        let point = if before.is_some() { law.at(&h)? } else { end };
-        let unit = Mat::<D>::identity().0.map(Vector);
-        for (row, a) in moduli.iter_mut().zip(&unit) {
-            for (block, b) in row.iter_mut().zip(&unit) {
-                set(block, l, &law.tangent(&point, a, b));
-            }
-        }
-    }
-    Ok(())
 }
 
 /// The components within the dimensions of a body, and the normal one in the others.

@@ -42,7 +42,6 @@ impl SaintVenantKirchhoff {
 
 impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     const ENERGY_DEGREE: usize = 4;
-    const FOUR: bool = true;
     type Point = Point<D>;
 
     #[inline(always)]
@@ -61,7 +60,7 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = self.kinematics(h)?;
         Ok((Four::of(0.5) * point.second.double_dot(&point.e), point.f * point.second))
     }

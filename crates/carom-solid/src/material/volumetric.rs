@@ -132,7 +132,6 @@ impl<const D: usize, T: Real> OfSwelling<D, T> {
 
 impl<const D: usize> Material<D> for Swelling {
     const ENERGY_DEGREE: usize = D;
-    const FOUR: bool = true;
     type Point = OfSwelling<D>;
 
     #[inline(always)]
@@ -151,7 +150,7 @@ impl<const D: usize> Material<D> for Swelling {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = OfSwelling::at(h)?;
         Ok((point.excess, point.cofactor))
     }
@@ -198,7 +197,6 @@ impl<const D: usize, T: Real> OfStrain<D, T> {
 
 impl<const D: usize> Material<D> for TraceOfStrain {
     const ENERGY_DEGREE: usize = 2;
-    const FOUR: bool = true;
     type Point = OfStrain<D>;
 
     #[inline(always)]
@@ -217,7 +215,7 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
         let point = OfStrain::at(h)?;
         Ok((point.trace(), Mat::identity() + point.h))
     }

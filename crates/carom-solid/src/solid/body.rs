@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use carom_algebra::{Mat, Vector, wide};
 
-use super::memory::Energies;
+use super::memory::{Energies, Step};
 use super::rotation::{angle, strain};
 use super::{Medium, Place, ShapePoint, Solid};
 use crate::body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Response};
@@ -248,28 +248,35 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         memory: &mut [f64],
     ) -> Result<Energies, Inverted> {
         let Medium { law, mean, .. } = self.medium(cell);
-        // Regions of a body may have laws with and without memory.
-        let mut energies = if law.memory() > 0 {
-            self.evolve(&**law, cell, at, ask, numbers, memory)?
-        } else {
-            memory.fill(0.0);
-            let stored = match (ask, at.before) {
-                // The mean dilatation is in the same pass over the points.
-                (Ask::Force, None) => {
-                    let stored = self.force(cell, at.y, numbers)?;
-                    return Ok(Energies { stored, dissipated: 0.0 });
-                }
-                (Ask::Force, Some(before)) => self.between_of(&**law, cell, [before, at.y], numbers)?,
-                (Ask::Tangent, _) => {
-                    let (force, tangent) = numbers.split_at_mut(N * D);
-                    self.tangent_of(&**law, cell, at.y, force, tangent)?
-                }
-                (Ask::Product(change), before) => {
-                    self.product_of(&**law, cell, before, [at.y, change], numbers)?;
-                    0.0
-                }
-            };
-            Energies { stored, dissipated: 0.0 }
+        let law = &**law;
+        // A law may use fewer numbers than the body has for a cell: the others are zero.
+        memory.fill(0.0);
+        let remembers = law.memory() > 0;
+        // The mean dilatation is in the same pass over the points.
+        if !remembers && let (Ask::Force, None) = (ask, at.before) {
+            return Ok(Energies { stored: self.force(cell, at.y, numbers)?, dissipated: 0.0 });
+        }
+        // At the start of a run nothing is remembered.
+        let is_virgin = remembers && at.past.memory.is_empty();
+        let none = if is_virgin { vec![0.0; self.memory] } else { Vec::new() };
+        let past = match (remembers, is_virgin) {
+            (false, _) => Past::default(),
+            (true, true) => Past::new(&none, at.past.dt),
+            (true, false) => at.past.part(cell, self.memory),
+        };
+        let memory = if remembers { memory } else { &mut [] };
+        let step = Step { law, cell, past, memory };
+        let mut energies = match (ask, at.before) {
+            (Ask::Force, None) => self.force_of(step, at.y, numbers)?,
+            (Ask::Force, Some(before)) => self.between_of(step, [before, at.y], numbers)?,
+            (Ask::Tangent, _) => {
+                let (force, tangent) = numbers.split_at_mut(N * D);
+                self.tangent_of(step, at.y, force, tangent)?
+            }
+            (Ask::Product(change), before) => {
+                self.product_of(step, before, [at.y, change], numbers)?;
+                Energies::default()
+            }
         };
         if const { Self::MAY_AVERAGE }
             && let Some(mean) = mean
@@ -303,7 +310,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         {
             return self.mean_force(&**law, mean, cell, y, force);
         }
-        self.force_of(&**law, cell, y, force)
+        Ok(self.force_of(Step::elastic(&**law, cell), y, force)?.stored)
     }
 
     /// Margin of one cell.

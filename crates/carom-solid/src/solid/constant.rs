@@ -8,7 +8,7 @@ use carom_algebra::{Four, Mat, wide};
 use super::Solid;
 use crate::body::Inverted;
 use crate::material::Past;
-use crate::points::{LANES, Lanes, Mats, Packed, get, set};
+use crate::points::{LANES, Lanes, Mats, Packed, get, lanes, set};
 use crate::shape::{Domain, Shape};
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
@@ -101,33 +101,28 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Energy densities and stresses of up to four cells, each by the law of its region; none if
     /// one is inverted.
     #[inline(always)]
-    fn stresses_of_four(
-        &self,
-        first: usize,
-        count: usize,
-        h: &Mats<D>,
-        stresses: &mut Mats<D>,
-    ) -> Option<Lanes> {
+    fn stresses_of_four(&self, first: usize, count: usize, h: &Mats<D>) -> Option<(Lanes, Mats<D>)> {
         let region = self.mesh.region(first);
         let alike = self.mesh.regions.is_empty()
             || (first..first + count).all(|cell| self.mesh.region(cell) == region);
         if alike {
-            return self.media[region].law.stresses(h, count, stresses).ok();
+            let found = self.media[region].law.stresses(h, &Past::default(), count, &mut []).ok()?;
+            return Some((found.stored.0, lanes(&found.stress)));
         }
         let mut densities = [0.0; LANES];
+        let mut stresses = [[[0.0; LANES]; D]; D];
         for (region, medium) in self.media.iter().enumerate() {
             // H = 0, which every law admits, in the lanes of other regions.
             let mut own = [[[0.0; LANES]; D]; D];
-            let mut of_own = own;
-            let lanes = || (0..count).filter(|l| self.mesh.region(first + l) == region);
-            lanes().for_each(|l| set(&mut own, l, &get(h, l)));
-            let found = medium.law.stresses(&own, count, &mut of_own).ok()?;
-            for l in lanes() {
-                densities[l] = found[l];
-                set(stresses, l, &get(&of_own, l));
+            let is_own = |l: &usize| self.mesh.region(first + l) == region;
+            (0..count).filter(is_own).for_each(|l| set(&mut own, l, &get(h, l)));
+            let found = medium.law.stresses(&own, &Past::default(), count, &mut []).ok()?;
+            for l in (0..count).filter(is_own) {
+                densities[l] = found.stored.0[l];
+                set(&mut stresses, l, &get(&lanes(&found.stress), l));
             }
         }
-        Some(densities)
+        Some((densities, stresses))
     }
 
     /// H of up to four cells, those of a packed block.
@@ -199,8 +194,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let gradients = &self.points[0].gradients;
         let Packed { maps, weights } = &self.packed[first / LANES];
         let h = self.gradients_of_four(first, count, y);
-        let mut stresses = [[[0.0; LANES]; D]; D];
-        let Some(densities) = self.stresses_of_four(first, count, &h, &mut stresses) else { return false };
+        let Some((densities, stresses)) = self.stresses_of_four(first, count, &h) else { return false };
         let mut pulled = [[[0.0; LANES]; D]; D];
         for i in 0..D {
             for j in 0..D {

@@ -1,47 +1,61 @@
 //! Sums over the quadrature points of a cell: forces, tangents, and differentials of forces.
 
-use carom_algebra::{Vector, wide};
+use carom_algebra::Vector;
 
+use super::memory::{Energies, Step};
 use super::{Place, Solid};
 use crate::body::Inverted;
-use crate::material::{ModuliMats, NotPositive, Pointwise};
-use crate::points::{Blocks, LANES, Lanes, Mats, sum};
+use crate::discrete_gradient::{between, change_between};
+use crate::material::{AtFour, ModuliMats, NotPositive};
+use crate::points::{Blocks, LANES, Lanes, Mats, lanes, sum};
+use crate::potential::Potential;
 use crate::shape::Shape;
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
-    /// Forces and, if requested, the tangent of a cell from `at(h, count, P, moduli)` for the
+    /// Forces and, if requested, the tangent of a cell from `at(law, H, memory, moduli)` for the
     /// gradients H of several displacement fields at the points of a block: their energies, P and,
     /// for a tangent, the moduli.
-    #[inline(always)]
     fn integrate<const M: usize>(
         &self,
-        cell: usize,
+        step: Step<D>,
         fields: [&[f64]; M],
-        at: impl Fn(&[Mats<D>; M], usize, &mut Mats<D>, &mut ModuliMats<D>) -> Result<Lanes, NotPositive>,
+        at: impl Fn(
+            &Potential<D>,
+            &[Mats<D>; M],
+            &mut [f64],
+            &mut ModuliMats<D>,
+        ) -> Result<AtFour<D>, NotPositive>,
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Result<f64, Inverted> {
+    ) -> Result<Energies, Inverted> {
+        let Step { law, cell, past, memory } = step;
+        let size = law.memory();
         let mut u = [[Vector::ZERO; N]; M];
         for m in 0..M {
             u[m] = self.displacements(cell, fields[m]);
         }
         let mut f = [[[0.0; LANES]; D]; N];
         let mut blocks: Blocks<D, N> = [[[[[0.0; LANES]; D]; D]; N]; N];
-        let mut energy = 0.0;
+        let mut energies = Energies::default();
         let Place { points, inverse, volume } = &self.places[cell];
-        for points in &self.points[points.clone()] {
+        for (block, points) in self.points[points.clone()].iter().enumerate() {
             let mut gradients = [[[[0.0; LANES]; D]; D]; M];
             for m in 0..M {
                 gradients[m] = points.gradient(&u[m], inverse);
             }
-            let mut stresses = [[[0.0; LANES]; D]; D];
             let mut moduli = [[[[[0.0; LANES]; D]; D]; D]; D];
-            let densities = at(&gradients, points.count, &mut stresses, &mut moduli)
+            let count = points.count;
+            let own = block * LANES * size..(block * LANES + count) * size;
+            let past = past.within(&own);
+            let memory = memory.get_mut(own).unwrap_or(&mut []);
+            let found = at(&Potential { law, past, count }, &gradients, memory, &mut moduli)
                 .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
             let weights = points.weights.map(|weight| volume * weight);
-            for l in 0..points.count {
-                energy += weights[l] * densities[l];
+            for l in 0..count {
+                energies.stored += weights[l] * found.stored.0[l];
+                energies.dissipated += weights[l] * found.dissipated.0[l];
             }
+            let mut stresses = lanes(&found.stress);
             scale(&mut stresses, &weights);
             points.add_force(&stresses, inverse, &mut f);
             if tangent.is_some() {
@@ -55,122 +69,91 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         if let Some(tangent) = tangent {
             spread(&blocks, tangent);
         }
-        Ok(energy)
+        Ok(energies)
     }
 
-    /// Force of a law; returns the energy.
-    pub(super) fn force_of(
-        &self,
-        law: &dyn Pointwise<D>,
-        cell: usize,
-        y: &[f64],
-        force: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || {
-                self.integrate(
-                    cell,
-                    [y],
-                    #[inline(always)]
-                    |[h], count, stress, _| law.stresses(h, count, stress),
-                    force,
-                    None,
-                )
-            },
+    /// Force of a law; returns the energies.
+    pub(super) fn force_of(&self, step: Step<D>, y: &[f64], force: &mut [f64]) -> Result<Energies, Inverted> {
+        self.integrate(
+            step,
+            [y],
+            |of, [h], memory, _| of.law.stresses(h, &of.past, of.count, memory),
+            force,
+            None,
         )
     }
 
-    /// Force and tangent of a law; returns the energy.
+    /// Force and tangent of a law; returns the energies.
     pub(super) fn tangent_of(
         &self,
-        law: &dyn Pointwise<D>,
-        cell: usize,
+        step: Step<D>,
         y: &[f64],
         force: &mut [f64],
         tangent: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || {
-                self.integrate(
-                    cell,
-                    [y],
-                    #[inline(always)]
-                    |[h], count, stress, moduli| law.tangents(h, count, stress, moduli),
-                    force,
-                    Some(tangent),
-                )
-            },
+    ) -> Result<Energies, Inverted> {
+        self.integrate(
+            step,
+            [y],
+            |of, [h], memory, moduli| of.law.tangents(h, &of.past, of.count, memory, moduli),
+            force,
+            Some(tangent),
         )
     }
 
-    /// Discrete gradient of a law; returns the energy at the end.
+    /// Discrete gradient of a law; returns the energies at the end.
     pub(super) fn between_of(
         &self,
-        law: &dyn Pointwise<D>,
-        cell: usize,
+        step: Step<D>,
         ends: [&[f64]; 2],
         force: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || {
-                self.integrate(
-                    cell,
-                    ends,
-                    #[inline(always)]
-                    |[start, end], count, stress, _| law.between([start, end], count, stress),
-                    force,
-                    None,
-                )
-            },
+    ) -> Result<Energies, Inverted> {
+        self.integrate(
+            step,
+            ends,
+            |of, [start, end], memory, _| between(of, [start, end], memory),
+            force,
+            None,
         )
     }
 
     /// Product of the tangent of a law, or of its discrete gradient, and a change.
     pub(super) fn product_of(
         &self,
-        law: &dyn Pointwise<D>,
-        cell: usize,
+        step: Step<D>,
         before: Option<&[f64]>,
         [y, change]: [&[f64]; 2],
         product: &mut [f64],
     ) -> Result<(), Inverted> {
-        wide(
-            #[inline(always)]
-            || match before {
-                None => self.differentiate(
-                    cell,
-                    [y],
-                    change,
-                    #[inline(always)]
-                    |[h], dh, count| law.increments(h, dh, count),
-                    product,
-                ),
-                Some(before) => self.differentiate(
-                    cell,
-                    [before, y],
-                    change,
-                    #[inline(always)]
-                    |[start, end], dh, count| law.increments_between([start, end], dh, count),
-                    product,
-                ),
-            },
-        )
+        match before {
+            None => self.differentiate(
+                step,
+                [y],
+                change,
+                |of, [h], dh| of.law.increments(h, dh, &of.past, of.count),
+                product,
+            ),
+            Some(before) => self.differentiate(
+                step,
+                [before, y],
+                change,
+                |of, [start, end], dh| change_between(of, [start, end], dh),
+                product,
+            ),
+        }
     }
 
-    /// Forces of the stress increments `at(h, dh, count)` in lanes, from the gradients of fields
-    /// and of an increment of the last.
-    #[inline(always)]
+    /// Forces of the stress increments `at(law, H, dH)` in lanes, from the gradients of fields and
+    /// of an increment of the last.
     fn differentiate<const M: usize>(
         &self,
-        cell: usize,
+        step: Step<D>,
         fields: [&[f64]; M],
         change: &[f64],
-        at: impl Fn(&[Mats<D>; M], &Mats<D>, usize) -> Result<Mats<D>, NotPositive>,
+        at: impl Fn(&Potential<D>, &[Mats<D>; M], &Mats<D>) -> Result<Mats<D>, NotPositive>,
         product: &mut [f64],
     ) -> Result<(), Inverted> {
+        let Step { law, cell, past, .. } = step;
+        let size = law.memory();
         let mut u = [[Vector::ZERO; N]; M];
         for m in 0..M {
             u[m] = self.displacements(cell, fields[m]);
@@ -183,12 +166,15 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         }
         let mut f = [[[0.0; LANES]; D]; N];
         let Place { points, inverse, volume } = &self.places[cell];
-        for points in &self.points[points.clone()] {
+        for (block, points) in self.points[points.clone()].iter().enumerate() {
             let mut gradients = [[[[0.0; LANES]; D]; D]; M];
             for m in 0..M {
                 gradients[m] = points.gradient(&u[m], inverse);
             }
-            let mut stresses = at(&gradients, &points.gradient(&du, inverse), points.count)
+            let count = points.count;
+            let own = block * LANES * size..(block * LANES + count) * size;
+            let of = Potential { law, past: past.within(&own), count };
+            let mut stresses = at(&of, &gradients, &points.gradient(&du, inverse))
                 .map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
             scale(&mut stresses, &points.weights.map(|weight| volume * weight));
             points.add_force(&stresses, inverse, &mut f);

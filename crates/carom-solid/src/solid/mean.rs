@@ -15,13 +15,12 @@
 //! The discrete gradient is p̄ ḡ with the quotient p̄ = ΔW/Δm and the discrete gradient ḡ of Σ w q,
 //! so that its work is V ΔW exactly.
 
-use carom_algebra::wide;
-
 use super::integrals::scale;
+use super::memory::Step;
 use super::{Place, Solid};
 use crate::body::{Ask, Configuration, Inverted, PointState};
 use crate::material::{Mean, NotPositive, Past, Pointwise};
-use crate::points::{LANES, sum};
+use crate::points::{LANES, lanes, sum};
 use crate::shape::{Domain, Shape};
 
 /// Blocks of quadrature points of a cell: eight points of Hex8, the largest that has this.
@@ -54,30 +53,17 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     ) -> Result<Swelling, Inverted> {
         let mut gradient = vec![0.0; N * D];
         let sum = match tangent {
-            None => self.force_of(&*mean.measure, cell, y, &mut gradient)?,
-            Some(tangent) => self.tangent_of(&*mean.measure, cell, y, &mut gradient, tangent)?,
+            None => self.force_of(Step::elastic(&*mean.measure, cell), y, &mut gradient)?,
+            Some(tangent) => {
+                self.tangent_of(Step::elastic(&*mean.measure, cell), y, &mut gradient, tangent)?
+            }
         };
-        Ok(Swelling { gradient, measure: sum / self.volume(cell) })
+        Ok(Swelling { gradient, measure: sum.stored / self.volume(cell) })
     }
 
-    /// Force of a cell; returns its energy.
+    /// Force of a cell, from one pass over its points: the pressure is known at its end. Returns
+    /// its energy.
     pub(super) fn mean_force(
-        &self,
-        law: &dyn Pointwise<D>,
-        mean: &Mean<D>,
-        cell: usize,
-        y: &[f64],
-        force: &mut [f64],
-    ) -> Result<f64, Inverted> {
-        wide(
-            #[inline(always)]
-            || self.mean_force_in_one_pass(law, mean, cell, y, force),
-        )
-    }
-
-    /// The force of a cell, from one pass over its points: the pressure is known at its end.
-    #[inline(always)]
-    fn mean_force_in_one_pass(
         &self,
         law: &dyn Pointwise<D>,
         mean: &Mean<D>,
@@ -98,12 +84,14 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             let h = points.gradient(&u, inverse);
             let count = points.count;
             let inverted = |NotPositive(det_f)| Inverted { cell, det_f };
-            let densities = law.stresses(&h, count, stress).map_err(inverted)?;
-            let measures = mean.measure.stresses(&h, count, cofactor).map_err(inverted)?;
+            let elastic = law.stresses(&h, &Past::default(), count, &mut []).map_err(inverted)?;
+            let measure = mean.measure.stresses(&h, &Past::default(), count, &mut []).map_err(inverted)?;
+            *stress = lanes(&elastic.stress);
+            *cofactor = lanes(&measure.stress);
             let weights = points.weights.map(|weight| volume * weight);
             for l in 0..count {
-                energy += weights[l] * densities[l];
-                swollen += weights[l] * measures[l];
+                energy += weights[l] * elastic.stored.0[l];
+                swollen += weights[l] * measure.stored.0[l];
                 cell_volume += weights[l];
             }
             scale(stress, &weights);
@@ -186,7 +174,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         force: &mut [f64],
     ) -> Result<f64, Inverted> {
         let mut gradient = vec![0.0; N * D];
-        let sum = self.between_of(&*mean.measure, cell, [before, now], &mut gradient)?;
+        let step = Step::elastic(&*mean.measure, cell);
+        let sum = self.between_of(step, [before, now], &mut gradient)?.stored;
         let volume = self.volume(cell);
         let start = self.swelling(mean, cell, before, None)?.measure;
         let end = sum / volume;
@@ -205,7 +194,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         product: &mut [f64],
     ) -> Result<(), Inverted> {
         let mut turning = vec![0.0; N * D];
-        self.product_of(&*mean.measure, cell, before, [y, change], &mut turning)?;
+        self.product_of(Step::elastic(&*mean.measure, cell), before, [y, change], &mut turning)?;
         let volume = self.volume(cell);
         let now = self.swelling(mean, cell, y, None)?;
         let swells = dot(&now.gradient, &self.of_cell(cell, change)) / volume;
@@ -218,7 +207,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 let start = self.swelling(mean, cell, before, None)?.measure;
                 let [pressure, stiffness] = mean.volumetric.between([start, now.measure]);
                 let mut along = vec![0.0; N * D];
-                self.between_of(&*mean.measure, cell, [before, y], &mut along)?;
+                self.between_of(Step::elastic(&*mean.measure, cell), [before, y], &mut along)?;
                 (pressure, stiffness, along)
             }
         };

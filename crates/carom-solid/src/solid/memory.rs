@@ -1,13 +1,7 @@
-//! Cells of laws with memory: forces, tangents, and differentials of forces, from the memory of
-//! each quadrature point at the start of a step.
+//! Steps of cells: what the points of a cell remember, in blocks of points one after the other.
 
-use carom_algebra::{Vector, wide};
-
-use super::integrals::{scale, spread};
-use super::{Place, Solid};
-use crate::body::{Ask, Configuration, Inverted};
-use crate::material::{Evolution, Evolved, ModuliMats, NotPositive, Past, Pointwise};
-use crate::points::{Blocks, LANES, sum};
+use super::Solid;
+use crate::material::{Past, Pointwise};
 use crate::shape::Shape;
 
 /// Energy that a cell stores, and energy that it dissipates in a step.
@@ -17,12 +11,21 @@ pub(super) struct Energies {
     pub(super) dissipated: f64,
 }
 
-/// Results of a cell: what it remembers, unless that is empty, its force or a change of it, and its
-/// tangent.
-struct Out<'a> {
-    memory: &'a mut [f64],
-    force: &'a mut [f64],
-    tangent: Option<&'a mut [f64]>,
+/// A law in a cell.
+pub(super) struct Step<'a, const D: usize> {
+    pub(super) law: &'a dyn Pointwise<D>,
+    pub(super) cell: usize,
+    /// Memory of the cell's points at the start of the step.
+    pub(super) past: Past<'a>,
+    /// The same at the end of the step; not asked for if empty.
+    pub(super) memory: &'a mut [f64],
+}
+
+impl<'a, const D: usize> Step<'a, D> {
+    /// Of a law without memory.
+    pub(super) fn elastic(law: &'a dyn Pointwise<D>, cell: usize) -> Self {
+        Self { law, cell, past: Past::default(), memory: &mut [] }
+    }
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
@@ -34,103 +37,5 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         let points =
             [false, true].map(|curved| has(curved) * self.force_rules[usize::from(curved)].points.len());
         of_point * points[0].max(points[1])
-    }
-
-    /// Response of a cell of a law with memory; the energies of a product are zero.
-    pub(super) fn evolve(
-        &self,
-        law: &dyn Pointwise<D>,
-        cell: usize,
-        at: &Configuration,
-        ask: Ask,
-        numbers: &mut [f64],
-        memory: &mut [f64],
-    ) -> Result<Energies, Inverted> {
-        // A law may use fewer numbers than the body has for a cell: the others are zero.
-        memory.fill(0.0);
-        // At the start of a run nothing is remembered.
-        let none = if at.past.memory.is_empty() { vec![0.0; self.memory] } else { Vec::new() };
-        let virgin = Past { memory: &none, dt: at.past.dt };
-        let past = if at.past.memory.is_empty() { virgin } else { at.past.part(cell, self.memory) };
-        let at = Configuration { past, ..*at };
-        let (force, tangent) = numbers.split_at_mut(N * D);
-        let change = match ask {
-            Ask::Product(change) => Some(self.vectors(cell, change)),
-            _ => None,
-        };
-        wide(
-            #[inline(always)]
-            || match ask {
-                Ask::Tangent => {
-                    self.evolve_points(law, cell, &at, None, Out { memory, force, tangent: Some(tangent) })
-                }
-                _ => self.evolve_points(law, cell, &at, change, Out { memory, force, tangent: None }),
-            },
-        )
-    }
-
-    /// The points of a cell, with the memory of the cell alone.
-    #[inline(always)]
-    fn evolve_points(
-        &self,
-        law: &dyn Pointwise<D>,
-        cell: usize,
-        at: &Configuration,
-        change: Option<[Vector<D>; N]>,
-        out: Out,
-    ) -> Result<Energies, Inverted> {
-        let Out { memory, force, tangent } = out;
-        let size = law.memory();
-        let u = self.displacements(cell, at.y);
-        let start = at.before.map(|before| self.displacements(cell, before));
-        let mut f = [[[0.0; LANES]; D]; N];
-        let mut blocks: Blocks<D, N> = [[[[[0.0; LANES]; D]; D]; N]; N];
-        let mut moduli: ModuliMats<D> = [[[[[0.0; LANES]; D]; D]; D]; D];
-        let mut energies = Energies::default();
-        let Place { points, inverse, volume } = &self.places[cell];
-        for (k, points) in self.points[points.clone()].iter().enumerate() {
-            let first = k * LANES;
-            let own = first * size..(first + points.count) * size;
-            let step = Evolution {
-                before: start.as_ref().map(|start| points.gradient(start, inverse)),
-                h: points.gradient(&u, inverse),
-                count: points.count,
-                past: Past { memory: &at.past.memory[own.clone()], dt: at.past.dt },
-                change: change.as_ref().map(|change| points.gradient(change, inverse)),
-            };
-            let mut out = Evolved {
-                stored: [0.0; LANES],
-                dissipated: [0.0; LANES],
-                stress: [[[0.0; LANES]; D]; D],
-                moduli: tangent.is_some().then_some(&mut moduli),
-                memory: memory.get_mut(own).unwrap_or(&mut []),
-            };
-            law.evolve(&step, &mut out).map_err(|NotPositive(det_f)| Inverted { cell, det_f })?;
-            let weights = points.weights.map(|weight| volume * weight);
-            for l in 0..points.count {
-                energies.stored += weights[l] * out.stored[l];
-                energies.dissipated += weights[l] * out.dissipated[l];
-            }
-            scale(&mut out.stress, &weights);
-            points.add_force(&out.stress, inverse, &mut f);
-            if tangent.is_some() {
-                moduli.as_flattened_mut().iter_mut().for_each(|block| scale(block, &weights));
-                points.add_tangent(&moduli, inverse, &mut blocks);
-            }
-        }
-        for (force, f) in force.iter_mut().zip(f.as_flattened()) {
-            *force = sum(f);
-        }
-        if let Some(tangent) = tangent {
-            spread(&blocks, tangent);
-        }
-        Ok(energies)
-    }
-
-    /// Vectors at the nodes of a cell from those at all nodes.
-    #[inline(always)]
-    fn vectors(&self, cell: usize, all: &[f64]) -> [Vector<D>; N] {
-        let all = all.as_chunks::<D>().0;
-        self.nodes(cell).map(|node| Vector(all[node]))
     }
 }

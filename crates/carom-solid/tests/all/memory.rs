@@ -53,7 +53,7 @@ impl<const D: usize, L: Material<D> + 'static> Material<D> for Damage<L> {
     type Point = DamagedPoint<L::Point>;
 
     fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
-        self.after(h, &Past { memory: &[0.0], dt: 0.0 })
+        self.after(h, &Past::new(&[0.0], 0.0))
     }
 
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {
@@ -176,9 +176,9 @@ fn tangents_and_products_are_derivatives() {
         let (mesh, dofs) = (body.mesh(), body.mesh().element.dofs());
         // In space the motion is nearly a change of volume.
         let most = if mesh.dimension() == 3 { 0.5 } else { 0.15 };
-        let memory = after(body, &moved(mesh, most), Past { memory: &[], dt: 0.0 });
+        let memory = after(body, &moved(mesh, most), Past::new(&[], 0.0));
         assert!(memory.iter().any(|number| number.abs() > 1e-3));
-        let past = Past { memory: &memory, dt: 0.1 };
+        let past = Past::new(&memory, 0.1);
         let before = moved(mesh, most);
         // It unloads, and it loads further.
         for by in [0.67 * most, 1.4 * most] {
@@ -242,7 +242,7 @@ fn work_is_stored_or_dissipated() {
         let mut total = 0.0;
         for by in [0.1, 0.2, 0.19, 0.12, 0.05, 0.25, 0.4, 0.0] {
             let y = moved(mesh, by);
-            let at = Configuration { before: Some(&before), y: &y, past: Past { memory: &memory, dt: 0.1 } };
+            let at = Configuration { before: Some(&before), y: &y, past: Past::new(&memory, 0.1) };
             let mut next = Vec::new();
             for (cell, stored) in stored.iter_mut().enumerate() {
                 let (force, energy, remembered) = of_cell(body, cell, &at, Ask::Force);
@@ -276,14 +276,14 @@ fn a_bar_has_the_exact_stress() {
     let mut largest = 0.0_f64;
     for strain in [0.05, 0.15, 0.2, 0.08, -0.1, 0.18, 0.3, -0.4] {
         let y = [0.0, 1.0 + strain];
-        let at = Configuration { before: None, y: &y, past: Past { memory: &memory, dt: 1.0 } };
+        let at = Configuration { before: None, y: &y, past: Past::new(&memory, 1.0) };
         let (force, energy, next) = of_cell(body, 0, &at, Ask::Force);
         largest = largest.max(0.5 * strain * strain);
         let intact = (-(largest - 0.005).max(0.0) / 0.02).exp();
         assert!((force[1] - intact * strain).abs() < 1e-15, "{strain}: {}", force[1]);
         assert!((energy - 0.5 * intact * strain * strain).abs() < 1e-15);
         assert!((next[0] - largest).abs() < 1e-16);
-        let state = body.point(0, &[0.5], &y, &Past { memory: &next, dt: 0.0 }).unwrap();
+        let state = body.point(0, &[0.5], &y, &Past::new(&next, 0.0)).unwrap();
         assert!((state.cauchy[0][0] - intact * strain).abs() < 1e-15);
         memory = next;
     }
@@ -306,10 +306,10 @@ fn a_sheet_has_the_exact_stress() {
             .iter()
             .flat_map(|x| [x[0] * (1.0 + strain), x[1] * (1.0 - 0.25 * strain)])
             .collect();
-        memory = after(&*body, &y, Past { memory: &memory, dt: 1.0 });
+        memory = after(&*body, &y, Past::new(&memory, 1.0));
         largest = largest.max(1.25 * strain * strain);
         let intact = (-(largest - 0.005).max(0.0) / 0.02).exp();
-        let state = body.point(0, &[0.2, 0.3], &y, &Past { memory: &memory, dt: 0.0 }).unwrap();
+        let state = body.point(0, &[0.2, 0.3], &y, &Past::new(&memory, 0.0)).unwrap();
         assert!((state.cauchy[0][0] - 2.5 * intact * strain).abs() < 1e-14, "{strain}");
         assert!(state.cauchy[1][1].abs() < 1e-14);
     }
@@ -328,7 +328,7 @@ fn linear_fields_are_projected_exactly() {
         let bent = |x: &[f64]| [x[0] + 1e-7 * x[0] * x[1], x[1] - 0.5e-7 * x[0] * x[0]];
         let y: Vec<f64> = mesh().nodes.iter().flat_map(bent).collect();
         let memory = vec![0.0; remembering.memory() * mesh().cell_count()];
-        let past = Past { memory: &memory, dt: 0.0 };
+        let past = Past::new(&memory, 0.0);
         for cell in 0..mesh().cell_count() {
             for xi in direct.reference_nodes() {
                 let found = remembering.point(cell, &xi, &y, &past).unwrap();
@@ -356,8 +356,8 @@ fn what_has_yielded_is_a_share_of_the_points() {
     let body = made(generate::rectangle(Element::T6, [0.0, 0.0], [1.0, 1.0], [1, 1]).unwrap(), &law);
     let mesh = body.mesh();
     let y: Vec<f64> = mesh.nodes.iter().flat_map(|x| [x[0] * (1.0 + 0.1 * x[1] * x[1]), x[1]]).collect();
-    let memory = after(&*body, &y, Past { memory: &[], dt: 0.0 });
-    let past = Past { memory: &memory, dt: 0.0 };
+    let memory = after(&*body, &y, Past::new(&[], 0.0));
+    let past = Past::new(&memory, 0.0);
     let mut shares = Vec::new();
     for cell in 0..mesh.cell_count() {
         for xi in body.reference_nodes() {
@@ -405,7 +405,7 @@ fn elastic_cells_of_a_body_that_yields_are_those_of_an_elastic_body() {
             for before in [None, Some(&start[..])] {
                 for ask in [Ask::Force, Ask::Tangent, Ask::Product(&change)] {
                     let answers = [(mixed, &memory[..]), (elastic, &[])].map(|(body, memory)| {
-                        let past = Past { memory, dt: 0.1 };
+                        let past = Past::new(memory, 0.1);
                         of_cell(&**body, count - 1, &Configuration { before, y: &end, past }, ask)
                     });
                     let [got, wanted] = answers.map(|(numbers, energy, _)| [numbers, vec![energy]].concat());
