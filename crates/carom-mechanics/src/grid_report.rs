@@ -67,6 +67,13 @@ pub enum LogEvent {
         /// The smallest relative singular value of the interface, with the sign of its determinant.
         regularity: f64,
     },
+    /// Closed gaps depend on others, or supports and ties keep them closed.
+    Dependent {
+        /// Time at the end of the (sub)step.
+        time: f64,
+        /// Contact and node of each of them.
+        gaps: Vec<(usize, usize)>,
+    },
     /// Velocities were projected where contact or stick began.
     Projection {
         /// Time.
@@ -131,6 +138,9 @@ impl GridReport {
         self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
         if let Some(regularity) = step.ambiguity {
             self.events.push(LogEvent::Ambiguous { time, regularity });
+        }
+        if !step.dependent.is_empty() {
+            self.events.push(LogEvent::Dependent { time, gaps: step.dependent });
         }
         if step.projection != 0.0 {
             self.events.push(LogEvent::Projection { time, jump: step.projection });

@@ -43,7 +43,7 @@ pub use grid_report::{Attempt, GridReport, LogEvent};
 pub use ledger::secondary_force;
 pub use materials::Materials;
 pub use place::Place;
-pub use pressure::Surfaces;
+pub use pressure::{Pressures, Surfaces};
 pub use rejected::Rejected;
 pub use settings::{Linear, Settings, Tangent};
 pub use simulation::Simulation;

@@ -16,15 +16,19 @@
 //! At a sharp edge only the facets that face the force carry it: facet e counts in ∫ Bᵢ da with
 //! min(1, 2cₑ/max c), cₑ the cosine between Fᵢ and its inner normal. Facets within 60° of the
 //! direction that faces the force best count fully, those across a right angle not at all.
+//!
+//! Several contacts may press on a node: on one side, as two bodies beside each other, or on two,
+//! as the floor and the wall of a corner. In the direction dₖ of contact k acts
+//! Σⱼ pⱼ max(0, dⱼ·dₖ).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use carom_algebra::Vector;
-use carom_contact::Rows;
+use carom_contact::{Pair, Rows};
 use carom_solid::{FacetFunctions, FacetShape};
 
-use crate::model::Model;
+use crate::model::{Contact, Model};
 use crate::state::State;
 
 /// The surfaces of all contacts of a model, and what their pressures need of them.
@@ -107,35 +111,21 @@ impl Surfaces {
         surfaces
     }
 
-    /// The pressures of a state by node; nodes that are not listed have none. Where a contact has a
-    /// pressure field, that of its secondary side is taken from it.
-    pub fn pressures(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
-        let mut pressures = self.of_forces(model, state);
-        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
+    /// The pressures of a state. Where a contact has a pressure field, that of its secondary side
+    /// is taken from it.
+    pub fn pressures(&self, model: &Model, state: &State) -> Pressures {
+        let contacts = model.contacts.iter().zip(&state.pairs).enumerate();
+        let of_contact = |(k, (contact, pairs)): (usize, (&Contact, &Vec<Pair>))| {
+            let mut pressing = self.of_forces(model, state, k);
             for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
-                let pressure = pressures.entry(of.node).or_default();
-                if contact.itself {
-                    // The node at the tip of a fold belongs to both flanks.
-                    *pressure = pressure.max(of.actual);
-                } else {
-                    // Forces of other contacts may act there, too.
-                    *pressure += of.actual;
-                }
+                let at: &mut Pressing = pressing.entry(of.node).or_insert(Pressing::NONE);
+                // The node at the tip of a fold belongs to both flanks.
+                at.actual = if contact.itself { at.actual.max(of.actual) } else { at.actual + of.actual };
+                at.nominal += of.nominal;
             }
-        }
-        pressures
-    }
-
-    /// The pressures per area of the reference surface of contacts with a pressure field, by node
-    /// of their secondary sides.
-    pub fn nominal_pressures(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
-        let mut pressures = BTreeMap::new();
-        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-            for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
-                *pressures.entry(of.node).or_default() += of.nominal;
-            }
-        }
-        pressures
+            pressing
+        };
+        Pressures { contacts: contacts.map(of_contact).collect() }
     }
 
     /// Place of a node among those of the facets; none of the carrier of an obstacle.
@@ -143,9 +133,9 @@ impl Surfaces {
         self.nodes.binary_search(&node).ok()
     }
 
-    /// The pressures that follow from the forces on nodes.
-    fn of_forces(&self, model: &Model, state: &State) -> BTreeMap<usize, f64> {
-        let loads = self.loads(&self.forces(model, state));
+    /// The pressures that follow from the forces of a contact on nodes.
+    fn of_forces(&self, model: &Model, state: &State, contact: usize) -> BTreeMap<usize, Pressing> {
+        let loads = self.loads(&self.forces(model, state, contact));
         let loaded = |node: &usize| loads[*node].is_some();
         let mut reached: Vec<usize> =
             (0..loads.len()).filter(loaded).flat_map(|node| &self.around[node]).copied().collect();
@@ -165,11 +155,18 @@ impl Surfaces {
                 let of = |(i, value): (&usize, &f64)| value * coefficients[*i].unwrap_or(0.0);
                 // Neighbouring facets agree: at a node of both, no other polynomial differs from
                 // zero.
-                pressures[*node].get_or_insert_with(|| facet.nodes.iter().zip(values).map(of).sum());
+                pressures[*node].get_or_insert_with(|| {
+                    let mut force = Vector::ZERO;
+                    for (i, value) in facet.nodes.iter().zip(values) {
+                        force += loads[*i].map_or(Vector::ZERO, |load| load.force * *value);
+                    }
+                    let actual = facet.nodes.iter().zip(values).map(of).sum();
+                    Pressing { actual, nominal: 0.0, force }
+                });
             }
         }
         let known = self.nodes.iter().zip(pressures);
-        known.filter_map(|(node, pressure): (_, Option<f64>)| Some((*node, pressure?))).collect()
+        known.filter_map(|(node, pressing): (_, Option<Pressing>)| Some((*node, pressing?))).collect()
     }
 
     /// The forces Fᵢ from nodal forces.
@@ -229,38 +226,100 @@ impl Surfaces {
         }
     }
 
-    /// The nodal forces of all active pairs on both sides.
-    fn forces(&self, model: &Model, state: &State) -> Vec<Option<Load>> {
+    /// The nodal forces of the active pairs of a contact on both sides.
+    fn forces(&self, model: &Model, state: &State, contact: usize) -> Vec<Option<Load>> {
         let mut forces = vec![None; self.nodes.len()];
-        let mut rows = Rows::new(model.dimension);
-        for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-            for pair in pairs.iter().filter(|pair| pair.active) {
-                rows.clear();
-                if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
+        let dimension = model.dimension;
+        let mut rows = Rows::new(dimension);
+        let pairs = state.pairs[contact].iter();
+        let contact = &model.contacts[contact];
+        for pair in pairs.filter(|pair| pair.active) {
+            rows.clear();
+            if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
+                continue;
+            }
+            let row = rows.row(0);
+            let is_of_field = contact.kinematics.is_of_field(pair.node);
+            let mean = Vector(row.first());
+            let along = if is_of_field { mean * mean.norm().recip() } else { mean };
+            for (k, (&node, slope)) in row.nodes.iter().zip(row.gradient.chunks_exact(dimension)).enumerate()
+            {
+                // The pressure field gives the pressure of the secondary side.
+                let has_field = is_of_field && k < row.own;
+                if has_field && contact.itself {
                     continue;
                 }
-                let row = rows.row(0);
-                let is_of_field = contact.kinematics.is_of_field(pair.node);
-                let mean = Vector(row.first());
-                let along = if is_of_field { mean * mean.norm().recip() } else { mean };
-                for (k, (&node, slope)) in
-                    row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)).enumerate()
-                {
-                    if is_of_field && k < row.own {
-                        // The pressure field gives the pressure of the secondary side.
-                        continue;
-                    }
-                    let mut force = Vector::ZERO;
-                    slope.iter().enumerate().for_each(|(i, slope)| force[i] = -pair.lambda * slope);
-                    // The sides are pressed by opposite forces.
-                    let sign = if k < row.own { 1.0 } else { -1.0 };
-                    let load = Load { size: sign * along.dot(&force), force };
-                    if let Some(place) = self.place(node) {
-                        forces[place].get_or_insert(Load::NONE).add(load, 1.0);
-                    }
+                let mut force = Vector::ZERO;
+                slope.iter().enumerate().for_each(|(i, slope)| force[i] = -pair.lambda * slope);
+                // The sides are pressed by opposite forces.
+                let sign = if k < row.own { 1.0 } else { -1.0 };
+                let size = if has_field { 0.0 } else { sign * along.dot(&force) };
+                if let Some(place) = self.place(node) {
+                    forces[place].get_or_insert(Load::NONE).add(Load { size, force }, 1.0);
                 }
             }
         }
         forces
+    }
+}
+
+/// The pressures of all contacts of a state.
+pub struct Pressures {
+    /// By node, those of each contact; nodes that are not listed have none.
+    contacts: Vec<BTreeMap<usize, Pressing>>,
+}
+
+/// What presses on a node.
+#[derive(Clone, Copy)]
+struct Pressing {
+    /// Pressure per area of the deformed surface.
+    actual: f64,
+    /// Pressure per area of the reference surface, of contacts with a pressure field.
+    nominal: f64,
+    /// A force in its direction; zero if that is not known.
+    force: Vector<3>,
+}
+
+impl Pressing {
+    const NONE: Self = Self { actual: 0.0, nominal: 0.0, force: Vector::ZERO };
+}
+
+impl Pressures {
+    /// Pressure at a node in the direction of a contact, per area of the deformed surface.
+    pub fn actual(&self, contact: usize, node: usize) -> f64 {
+        self.along(contact, node, |pressing| pressing.actual)
+    }
+
+    /// The same per area of the reference surface, of contacts with a pressure field.
+    pub fn nominal(&self, contact: usize, node: usize) -> f64 {
+        self.along(contact, node, |pressing| pressing.nominal)
+    }
+
+    /// The nodes on which a contact presses, and the largest pressure in the direction of one.
+    pub fn largest(&self) -> BTreeMap<usize, f64> {
+        let mut largest = BTreeMap::new();
+        for (contact, pressing) in self.contacts.iter().enumerate() {
+            for &node in pressing.keys() {
+                let pressure = self.actual(contact, node);
+                largest
+                    .entry(node)
+                    .and_modify(|most: &mut f64| *most = most.max(pressure))
+                    .or_insert(pressure);
+            }
+        }
+        largest
+    }
+
+    fn along(&self, contact: usize, node: usize, of: impl Fn(&Pressing) -> f64) -> f64 {
+        let Some(own) = self.contacts[contact].get(&node) else { return 0.0 };
+        let mut sum = of(own);
+        for (k, pressing) in self.contacts.iter().enumerate() {
+            let Some(other) = pressing.get(&node).filter(|_| k != contact) else { continue };
+            let sizes = own.force.norm() * other.force.norm();
+            if sizes > 0.0 {
+                sum += of(other) * (own.force.dot(&other.force) / sizes).max(0.0);
+            }
+        }
+        sum
     }
 }

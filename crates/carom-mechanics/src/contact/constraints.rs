@@ -74,13 +74,22 @@ pub struct Constraints {
     /// Contact, pair and components of slips of sticks that depend on these rows, and have no
     /// traction.
     pub dropped: Vec<((usize, usize), Along)>,
+    /// Contact and pair of closed gaps that depend on these rows, and have no multiplier.
+    pub dependent: Vec<(usize, usize)>,
 }
 
 impl Constraints {
     /// No rows.
     pub fn none(dimension: usize) -> Self {
         let [rows, directions] = [Rows::new(dimension), Rows::new(dimension)];
-        Self { list: Vec::new(), rows, directions, is_skew: false, dropped: Vec::new() }
+        Self {
+            list: Vec::new(),
+            rows,
+            directions,
+            is_skew: false,
+            dropped: Vec::new(),
+            dependent: Vec::new(),
+        }
     }
 
     /// Rows as constraints of weight 1, without second derivatives, to solve for velocities or
@@ -111,6 +120,10 @@ impl Constraints {
         let slips = PreventedSlips::of(equations, evaluation);
         let places = slips.independent(equations, evaluation);
         constraints.dropped = slips.dropped(evaluation, &places);
+        let depends = |&(k, p): &(usize, usize)| {
+            model.contacts[k].interface.is_constraint() && places.binary_search(&(k, p, 0)).is_err()
+        };
+        constraints.dependent = evaluation.pressing().filter(depends).collect();
         for (k, p, number) in places {
             let place = (k, p);
             if number > 0 {

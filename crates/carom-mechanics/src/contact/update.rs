@@ -286,11 +286,17 @@ impl<'a> ContactUpdate<'a> {
                 continue;
             }
             let rub = |(p, pair): (usize, &Pair)| {
-                // One that has just closed has no pressure yet; one that slips without friction
-                // continues to do so.
-                let slips = pair.tangential.friction_state != FrictionState::Stick
-                    && equations.laws[k][pair.node].is_none();
-                (pair.active && pair.lambda != 0.0 && !slips).then(|| equations.rubs(evaluation, (k, p)))
+                // One that has just closed has no pressure yet. One whose gap others keep closed,
+                // as a support or a tie does, has none when Newton's method has converged, and
+                // cannot stick. What slips without friction or pressure continues to do so.
+                let presses = pair.lambda != 0.0;
+                let sticks = pair.tangential.friction_state == FrictionState::Stick;
+                let rubs = if presses {
+                    sticks || !equations.laws[k][pair.node].is_none()
+                } else {
+                    sticks && settled
+                };
+                (pair.active && rubs).then(|| equations.rubs(evaluation, (k, p)))
             };
             // Pairs that were found since the evaluation have no rows yet.
             let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];

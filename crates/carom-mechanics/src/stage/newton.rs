@@ -54,6 +54,8 @@ pub(crate) struct Effort {
     /// The smallest relative singular value of the interface with friction at the solution,
     /// negative where its determinant is; none without friction.
     pub regularity: Option<f64>,
+    /// Contact and node of the closed gaps that had no multiplier in the last solve.
+    pub dependent: Vec<(usize, usize)>,
     /// The point of the reused factor.
     pub frozen: FrozenTangent,
 }
@@ -312,6 +314,8 @@ impl<'a> Newton<'a> {
         let regularity = system.preconditioner.regularity().filter(|_| rows.is_skew);
         self.contact.regularity = self.contact.regularity.min(regularity.unwrap_or(f64::INFINITY));
         self.effort.regularity = regularity;
+        let node = |&(k, p): &(usize, usize)| (k, model.contacts[k].node(&now.at.pairings[k].pairs[p]));
+        self.effort.dependent = rows.dependent.iter().map(node).collect();
         let pace = if changed { 1.0 } else { self.ratio };
         let digits = if is_static { DIGITS } else { 1.0 };
         let goal = Goal {

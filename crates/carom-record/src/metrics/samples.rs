@@ -43,15 +43,18 @@ pub fn integral(times: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Largest mean over a time window of the quantity whose integrals are given, one per component:
-/// max |P(t + w) − P(t)|/w over the recorded t.
+/// max |P(t + w) − P(t)|/w. Between rows P is linear, and the norm convex: the largest window
+/// begins or ends at a row.
 pub fn peak_mean(times: &[f64], integrals: &[&[f64]], window: f64) -> Option<f64> {
+    let end = *times.last()?;
     let mean = |t: f64| {
-        let change = |p: &&[f64]| Some((at(times, p, t + window)? - at(times, p, t)?) / window);
+        let change = |p: &&[f64]| Some((at(times, p, (t + window).min(end))? - at(times, p, t)?) / window);
         integrals.iter().map(change).try_fold(0.0, |sum, f| Some(f64::hypot(sum, f?)))
     };
-    let last = times.last()? - window;
-    // The last window, which ends with the record, may start between rows.
-    times.iter().copied().filter(|&t| t <= last).chain([last]).filter_map(mean).reduce(f64::max)
+    let first = *times.first()?;
+    let last = end - window;
+    let ending = times.iter().map(|t| t - window);
+    times.iter().copied().chain(ending).filter(|&t| first <= t && t <= last).filter_map(mean).reduce(f64::max)
 }
 
 /// Row and value that beats all others, the first of equal ones; NaN is ignored.

@@ -82,7 +82,10 @@ impl Bodies<'_> {
         let theirs = bounded(spec, theirs, self.depth_in(secondary));
         let single =
             Combined::both(against(ours, &opposite, &side), against(theirs, &side, &opposite).reversed());
-        Box::new(Combined::both(integrated(spec, Mortar::new(opposite, side, self.reference, both)), single))
+        let mortar = integrated(spec, Mortar::new(opposite, side, self.reference, both));
+        let is_held = |&node: &usize| self.fixed[2 * node] && self.fixed[2 * node + 1];
+        let stands = primary.nodes.iter().all(is_held);
+        Box::new(Combined::both(if stands { self.without_held(spec, mortar) } else { mortar }, single))
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> Combined {
@@ -151,9 +154,16 @@ impl Bodies<'_> {
         let single = bounded(spec, single, self.depth_in(side));
         let single = obstacle.of_nodes(&single);
         let mortar = integrated(spec, Mortar::with_obstacle(surface, obstacle, self.reference));
+        let mortar = self.without_held(spec, mortar);
         let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(mortar), Box::new(single)];
         parts.extend(tips.map(|tips| Box::new(tips) as Box<dyn Kinematics>));
         Box::new(Combined::new(parts))
+    }
+
+    /// Springs press on a node that is held, multipliers do not.
+    fn without_held(&self, spec: &ContactSpec, mortar: Mortar) -> Mortar {
+        let multipliers = spec.enforcement == case::Enforcement::Multiplier;
+        if multipliers { mortar.without_held(self.fixed) } else { mortar }
     }
 
     /// Whether a node over a joint has a pair with one facet: springs chatter, and load steps in

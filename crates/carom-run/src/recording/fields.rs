@@ -203,7 +203,7 @@ fn largest_von_mises(model: &Model, state: &State) -> Vec<f64> {
 
 fn pressures(surfaces: &Surfaces, model: &Model, state: &State) -> Vec<f64> {
     let mut at_nodes = vec![0.0; model.mass.nodes()];
-    for (node, pressure) in surfaces.pressures(model, state) {
+    for (node, pressure) in surfaces.pressures(model, state).largest() {
         at_nodes[node] = pressure;
     }
     at_nodes

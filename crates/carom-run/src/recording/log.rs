@@ -130,6 +130,14 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             );
             Event::new(step, *time, "ambiguous", message).with("regularity", *regularity)
         }
+        LogEvent::Dependent { time, gaps } => {
+            let places =
+                gaps.iter().map(|(contact, node)| format!("node {node} of \"{}\"", contact_name(*contact)));
+            let places = places.collect::<Vec<_>>().join(", ");
+            let message =
+                format!("closed without a multiplier: {places}: other gaps, supports or ties determine this");
+            Event::new(step, *time, "dependent", message).with("places", places)
+        }
         LogEvent::Projection { time, jump } => {
             let message = format!(
                 "velocities projected where contact or stick begins: kinetic energy changes by {jump:.6e} [energy]"

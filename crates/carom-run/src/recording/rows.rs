@@ -65,9 +65,7 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
         return rows;
     }
     let pressures = surfaces.pressures(model, state);
-    let nominal = surfaces.nominal_pressures(model, state);
     let has_field = model.contacts.iter().any(|contact| contact.kinematics.is_of_field(0));
-    let pressure_at = |node: usize| pressures.get(&node).copied().unwrap_or(0.0);
     let in_space = model.dimension == 3;
     // Of each contact with friction in space: friction on the secondary side.
     let count = |(contact, pairs): (&Contact, &Vec<Pair>)| {
@@ -81,7 +79,8 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
             (0..3).for_each(|i| rubbing[k][p][i] -= traction * along[i]);
         });
     }
-    for ((contact, pairs), rubbing) in model.contacts.iter().zip(&state.pairs).zip(rubbing) {
+    for (k, ((contact, pairs), rubbing)) in model.contacts.iter().zip(&state.pairs).zip(rubbing).enumerate() {
+        let pressure_at = |node: usize| pressures.actual(k, node);
         for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
             let Tangential { traction, slip, .. } = pair.tangential;
             let node = contact.kinematics.secondary()[pair.node];
@@ -106,7 +105,7 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
                 gap,
                 multiplier: size * pair.lambda,
                 pressure: mean(&shares, &pressure_at),
-                nominal: nominal.get(&node).copied().unwrap_or_default(),
+                nominal: pressures.nominal(k, node),
                 center: std::array::from_fn(|i| if has_field { coordinate(&center, i) } else { 0.0 }),
                 normal,
                 friction: match (&contact.friction, pair.tangential.friction_state) {

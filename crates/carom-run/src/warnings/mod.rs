@@ -51,7 +51,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 27] = [
+pub const WARNINGS: [Entry; 28] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -162,6 +162,14 @@ pub const WARNINGS: [Entry; 27] = [
         why: "the bodies did not meet on its sides before the end, or not where these are",
         advice: "a later end, or sides that meet; nothing where the contact is a precaution",
         rule: Rule::Record(record::open_contact),
+    },
+    Entry {
+        id: "dependent-gaps",
+        why: "forces and their sum are right, but how the pressure is shared between these nodes and others is not \
+              determined: pressures there may be anything",
+        advice: "enforcement = \"augmented\"; the finer side as the primary one if the secondary one is held; a side \
+                 without the nodes that supports or ties hold",
+        rule: Rule::Record(record::dependent_gaps),
     },
     Entry {
         id: "undeclared-contact",

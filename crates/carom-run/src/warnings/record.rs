@@ -179,6 +179,32 @@ pub(super) fn ambiguous_friction(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     })
 }
 
+/// Most nodes that a warning names.
+const NODES: usize = 3;
+
+/// Closed gaps that depended on others in a load step, or in two steps: in the step in which faces
+/// meet, the corners of both may close.
+pub(super) fn dependent_gaps(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let least = if case.time.scheme.is_static() { 1 } else { 2 };
+    let mut steps: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for event in events(run, "dependent") {
+        let places = event.data.get("places").and_then(|places| places.as_str()).unwrap_or_default();
+        places.split(", ").for_each(|place| steps.entry(place).or_default().push(event.time));
+    }
+    steps.retain(|_, times| times.len() >= least);
+    let Some(first) = steps.values().flatten().copied().reduce(f64::min) else { return Vec::new() };
+    let mut named: Vec<&str> = steps.keys().copied().take(NODES).collect();
+    if steps.len() > NODES {
+        named.push("others");
+    }
+    let what = format!(
+        "other gaps, supports or ties keep nodes closed that have no multiplier, from t = {} on: {}",
+        short(first),
+        named.join(", ")
+    );
+    vec![Found::of_the_run(what)]
+}
+
 /// Grid steps that the fallback took.
 pub(super) fn fallback_steps(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     first_of(run, "fallback", |time, count| match count {

@@ -7,6 +7,7 @@ use carom_record::{FieldSet, MemoryRecord, Source};
 use carom_run::recording::run_in_memory;
 
 use super::common::case;
+use super::rebound::record;
 
 const PLANE: [&str; 5] = ["T3", "T6", "T10", "Q4", "Q9"];
 const SPACE: [&str; 5] = ["Tet4", "Tet10", "Tet20", "Hex8", "Hex27"];
@@ -155,3 +156,64 @@ fn the_resultant_is_the_force_and_nothing_is_negative() {
         assert!(least >= -1e-9, "{element}, {cells} cells: {least}");
     }
 }
+
+/// A block in the corner of a floor and a wall, with other pressures opposite: its contact
+/// pressures are these, also at the corner, where both contacts act on one node.
+#[test]
+fn a_floor_and_a_wall_press_on_their_own_sides() {
+    for element in PLANE {
+        for method in ["node-to-segment", "mortar"] {
+            let run = record(
+                IN_A_CORNER,
+                &[
+                    &format!("body.a.element={element}"),
+                    &format!("contact.floor.method={method}"),
+                    &format!("contact.wall.method={method}"),
+                ],
+            );
+            let last = run.contact.last().unwrap().step;
+            for row in run.contact.iter().filter(|row| row.step == last) {
+                let exact = if row.contact == "floor" { 5.0 } else { 3.0 };
+                assert!(
+                    (row.pressure - exact).abs() < 1e-8,
+                    "{element} {method} {} node {}: {}",
+                    row.contact,
+                    row.node,
+                    row.pressure
+                );
+            }
+        }
+    }
+}
+
+const IN_A_CORNER: &str = r#"
+dimension = 2
+plane = "stress"
+thickness = 0.37
+material = [{ name = "m", law = "neo-hookean", density = 1.3, young = 100.0, poisson = 0.3 }]
+[[body]]
+name = "a"
+material = "m"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.3, 0.7], cells = [5, 3] }
+[[load]]
+on = ["a.top"]
+pressure = "5*t"
+[[load]]
+on = ["a.right"]
+pressure = "3*t"
+[[contact]]
+name = "floor"
+secondary = "a.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[[contact]]
+name = "wall"
+secondary = "a.left"
+primary = { plane = { point = [0.0, 0.0], normal = [1.0, 0.0] } }
+[time]
+end = 1.0
+step = 0.25
+scheme = { kind = "static" }
+[output]
+fields_every = 0
+"#;

@@ -11,6 +11,7 @@ mod conserving_contact;
 mod contact_pressure;
 mod corners;
 mod damage;
+mod dependent_gaps;
 mod edges;
 mod energy_momentum;
 mod explicit_energy;

@@ -274,7 +274,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
                 self.tangent_of(step, at.y, force, tangent)?
             }
             (Ask::Product(change), before) => {
-                self.product_of(step, before, [at.y, change], numbers)?;
+                self.product_of(&step, before, [at.y, change], numbers)?;
                 Energies::default()
             }
         };

@@ -119,7 +119,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Product of the tangent of a law, or of its discrete gradient, and a change.
     pub(super) fn product_of(
         &self,
-        step: Step<D>,
+        step: &Step<D>,
         before: Option<&[f64]>,
         [y, change]: [&[f64]; 2],
         product: &mut [f64],
@@ -146,13 +146,13 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// of an increment of the last.
     fn differentiate<const M: usize>(
         &self,
-        step: Step<D>,
+        step: &Step<D>,
         fields: [&[f64]; M],
         change: &[f64],
         at: impl Fn(&Potential<D>, &[Mats<D>; M], &Mats<D>) -> Result<Mats<D>, NotPositive>,
         product: &mut [f64],
     ) -> Result<(), Inverted> {
-        let Step { law, cell, past, .. } = step;
+        let Step { law, cell, past, .. } = *step;
         let size = law.memory();
         let mut u = [[Vector::ZERO; N]; M];
         for m in 0..M {

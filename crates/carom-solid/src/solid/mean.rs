@@ -194,7 +194,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         product: &mut [f64],
     ) -> Result<(), Inverted> {
         let mut turning = vec![0.0; N * D];
-        self.product_of(Step::elastic(&*mean.measure, cell), before, [y, change], &mut turning)?;
+        self.product_of(&Step::elastic(&*mean.measure, cell), before, [y, change], &mut turning)?;
         let volume = self.volume(cell);
         let now = self.swelling(mean, cell, y, None)?;
         let swells = dot(&now.gradient, &self.of_cell(cell, change)) / volume;

@@ -8,7 +8,9 @@
 //! continuous over the joints of facets but for kinks of more than 30°, where each facet has a
 //! coefficient of its own. B_j ≥ 0 and Σ_j B_j = 1: coefficients p_j ≥ 0 give a pressure p ≥ 0
 //! everywhere. For k ≥ 2 pairs of spaces of this kind are inf–sup stable, while pressures of the
-//! degree of the facets, as for k = 1, are not where the ends of the side are fixed.
+//! degree of the facets, as for k = 1, are not where supports hold nodes of the side along its
+//! normal: there are more coefficients than gaps that can change. There the polynomial of a node
+//! that is held is added to that of the other end of its facet, on which the pressure is constant.
 
 use carom_solid::quadrature;
 
@@ -23,6 +25,8 @@ pub(super) struct Part {
     pub(super) facet: usize,
     /// Number of the polynomial, in the direction of traversal.
     pub(super) polynomial: usize,
+    /// ∫ B dΓ over the reference surface.
+    pub(super) area: f64,
 }
 
 /// A coefficient of the pressure.
@@ -40,6 +44,9 @@ pub(super) struct Multiplier {
 
 /// Most polynomials on a facet.
 pub(super) const MOST: usize = 3;
+
+/// Component of a unit normal that counts as zero.
+const ALONG: f64 = 1e-9;
 
 /// Degree of the pressure on facets of a degree.
 pub(super) fn degree_of_pressure(of_facets: usize) -> usize {
@@ -86,17 +93,66 @@ pub(super) fn multipliers(side: &Surface, reference: &[f64]) -> Vec<Multiplier> 
             } else if let Some(next) = next.filter(|_| polynomial == degree) {
                 at_start[next] = Some(number);
             }
+            let rule = quadrature::line(2 * side.shape.degree() + degree);
+            let mut area = 0.0;
+            for (xi, weight) in rule.iter() {
+                let measure = side.facet(facet).at(y, xi[0]).measure;
+                area += weight * measure * bernstein(degree, polynomial, xi[0]);
+            }
             let of = &mut all[number];
-            of.parts.push(Part { facet, polynomial });
+            of.area += area;
+            of.parts.push(Part { facet, polynomial, area });
             for &node in nodes {
                 if !of.nodes.contains(&node) {
                     of.nodes.push(node);
                 }
             }
-            let rule = quadrature::line(2 * side.shape.degree() + degree);
-            for (xi, weight) in rule.iter() {
-                let measure = side.facet(facet).at(y, xi[0]).measure;
-                of.area += weight * measure * bernstein(degree, polynomial, xi[0]);
+        }
+    }
+    all
+}
+
+/// Adds the polynomials of degree 1 of nodes that are held along the normal to those of the other
+/// ends of their facets; `fixed`: by dof, whether a support holds it.
+pub(super) fn without_held(
+    mut all: Vec<Multiplier>,
+    side: &Surface,
+    reference: &[f64],
+    fixed: &[bool],
+) -> Vec<Multiplier> {
+    let y = Places::new(reference, 2);
+    let is_held = |of: &Multiplier| {
+        of.parts.iter().all(|part| {
+            let end = if part.polynomial == 0 { -1.0 } else { 1.0 };
+            let normal = side.facet(part.facet).at(y, end).normal;
+            (0..2).all(|i| fixed[2 * of.node + i] || normal.0[i].abs() <= ALONG)
+        })
+    };
+    let held: Vec<bool> = all.iter().map(is_held).collect();
+    // First beside coefficients that remain, then beside those that have gained a facet.
+    loop {
+        let mut gained: Vec<(usize, Part)> = Vec::new();
+        for part in (0..all.len()).filter(|&of| held[of]).flat_map(|of| &all[of].parts) {
+            let is_opposite =
+                |other: &Part| other.facet == part.facet && other.polynomial + part.polynomial == 1;
+            let opposite = all.iter().position(|of| of.parts.iter().any(is_opposite));
+            gained.extend(opposite.filter(|&of| !held[of]).map(|of| (of, *part)));
+        }
+        if gained.is_empty() {
+            break;
+        }
+        for (of, part) in gained {
+            let is_other = |own: &Part| (own.facet, own.polynomial) != (part.facet, part.polynomial);
+            all.iter_mut().for_each(|of| of.parts.retain(is_other));
+            all[of].parts.push(part);
+        }
+    }
+    all.retain(|of| !of.parts.is_empty());
+    for of in &mut all {
+        of.area = of.parts.iter().map(|part| part.area).sum();
+        for node in of.parts.iter().flat_map(|part| side.facet(part.facet).nodes) {
+            if !of.nodes.contains(node) {
+                of.nodes.push(*node);
             }
         }
     }

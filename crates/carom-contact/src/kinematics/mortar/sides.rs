@@ -4,7 +4,7 @@ use std::sync::Mutex;
 
 use super::cache::Cache;
 use super::cut::{Quadrature, Rule};
-use super::multipliers::{MOST, Multiplier, Part, degree_of_pressure, multipliers};
+use super::multipliers::{MOST, Multiplier, Part, degree_of_pressure, multipliers, without_held};
 use super::opposite::{Opposite, Primary};
 use crate::kinematics::facets::Facets;
 use crate::kinematics::folds::Folds;
@@ -86,13 +86,7 @@ impl Mortar {
         let degree = secondary.shape().degree();
         let rule = Rule::new(Quadrature::default(), [degree, opposite.degree()]);
         let mut used = vec![false; secondary.facets()];
-        let mut of_facets = vec![[0; MOST]; secondary.facets()];
-        for (number, of) in multipliers.iter().enumerate() {
-            for &Part { facet, polynomial } in &of.parts {
-                used[facet] = true;
-                of_facets[facet][polynomial] = number;
-            }
-        }
+        multipliers.iter().flat_map(|of| &of.parts).for_each(|part| used[part.facet] = true);
         let own = &secondary.nodes[..secondary.facets() * secondary.shape.nodes()];
         let mut surface = [own, opposite.all_nodes(), &opposite.sibling_nodes()].concat();
         surface.sort_unstable();
@@ -100,7 +94,7 @@ impl Mortar {
         Self {
             surface,
             used,
-            of_facets,
+            of_facets: of_facets(&multipliers, secondary.facets()),
             cache: Mutex::default(),
             nodes: multipliers.iter().map(|of| of.node).collect(),
             degree: degree_of_pressure(degree),
@@ -124,6 +118,20 @@ impl Mortar {
         Self { springs: true, ..self }
     }
 
+    /// With multipliers that leave the nodes of facets of degree 1 that supports hold along the
+    /// normal to their neighbours; `fixed`: by dof, whether a support holds it. For an opposite
+    /// side that does not move: otherwise its motion tells their gaps apart.
+    #[must_use]
+    pub fn without_held(mut self, fixed: &[bool]) -> Self {
+        if self.secondary.shape().degree() == 1 {
+            let all = std::mem::take(&mut self.multipliers);
+            self.multipliers = without_held(all, &self.secondary, &self.reference, fixed);
+            self.of_facets = of_facets(&self.multipliers, self.secondary.facets());
+            self.nodes = self.multipliers.iter().map(|of| of.node).collect();
+        }
+        self
+    }
+
     /// With another quadrature than in parts.
     #[must_use]
     pub fn integrated(mut self, quadrature: Quadrature) -> Self {
@@ -135,4 +143,15 @@ impl Mortar {
     pub(super) fn reference(&self) -> Places<'_> {
         Places::new(&self.reference, 2)
     }
+}
+
+/// The multiplier of each polynomial of each facet of the secondary side.
+fn of_facets(multipliers: &[Multiplier], facets: usize) -> Vec<[usize; MOST]> {
+    let mut numbers = vec![[0; MOST]; facets];
+    for (number, of) in multipliers.iter().enumerate() {
+        for &Part { facet, polynomial, .. } in &of.parts {
+            numbers[facet][polynomial] = number;
+        }
+    }
+    numbers
 }

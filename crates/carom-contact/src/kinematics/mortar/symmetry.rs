@@ -29,6 +29,7 @@ impl Mortar {
             let at_end = ends.filter(|(polynomial, _)| *polynomial == part.polynomial);
             at_end.filter_map(|(_, forward)| self.end_in_plane(&self.secondary, part.facet, forward))
         });
+        let ends = ends.filter(|end| end.node == self.multipliers[multiplier].node);
         ends.into_iter().find_map(|end| self.with_opposite(&end)).unwrap_or_default()
     }
 

@@ -180,7 +180,7 @@ impl Mortar {
         let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
         self.at(y, &multiplier.parts, |of_facets| {
             let mut samples = Vec::new();
-            for &Part { facet, polynomial } in &multiplier.parts {
+            for &Part { facet, polynomial, .. } in &multiplier.parts {
                 let shape = self.secondary.facet(facet).shape;
                 let Faced { points, borders, carriers, .. } = &of_facets[facet];
                 let carriers = carriers.unwrap_or_default();
@@ -227,7 +227,7 @@ impl Mortar {
         let size = 2 * stencil.nodes.len();
         let place = |node: usize| stencil.nodes.iter().position(|&other| other == node);
         self.at(y, &multiplier.parts, |of_facets| {
-            for &Part { facet, polynomial } in &multiplier.parts {
+            for &Part { facet, polynomial, .. } in &multiplier.parts {
                 let own = self.secondary.facet(facet);
                 let carriers = of_facets[facet].carriers.unwrap_or_default();
                 for joint in &of_facets[facet].joints {
