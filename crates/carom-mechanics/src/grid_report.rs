@@ -140,7 +140,10 @@ impl GridReport {
             self.events.push(LogEvent::Ambiguous { time, regularity });
         }
         if !step.dependent.is_empty() {
-            self.events.push(LogEvent::Dependent { time, gaps: step.dependent });
+            let mut gaps = step.dependent;
+            gaps.sort_unstable();
+            gaps.dedup();
+            self.events.push(LogEvent::Dependent { time, gaps });
         }
         if step.projection != 0.0 {
             self.events.push(LogEvent::Projection { time, jump: step.projection });

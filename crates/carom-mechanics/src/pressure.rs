@@ -57,6 +57,9 @@ struct RulePoint {
     weight: f64,
 }
 
+/// Force, relative to the largest one of a contact, that has no direction.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Forces on a node, or of a Bernstein polynomial.
 #[derive(Clone, Copy)]
 struct Load {
@@ -116,6 +119,9 @@ impl Surfaces {
     pub fn pressures(&self, model: &Model, state: &State) -> Pressures {
         let contacts = model.contacts.iter().zip(&state.pairs).enumerate();
         let of_contact = |(k, (contact, pairs)): (usize, (&Contact, &Vec<Pair>))| {
+            if pairs.iter().all(|pair| !pair.active) {
+                return BTreeMap::new();
+            }
             let mut pressing = self.of_forces(model, state, k);
             for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
                 let at: &mut Pressing = pressing.entry(of.node).or_insert(Pressing::NONE);
@@ -165,8 +171,14 @@ impl Surfaces {
                 });
             }
         }
-        let known = self.nodes.iter().zip(pressures);
-        known.filter_map(|(node, pressing): (_, Option<Pressing>)| Some((*node, pressing?))).collect()
+        let sizes = pressures.iter().flatten().map(|of: &Pressing| of.force.norm());
+        let round_off = ROUND_OFF * sizes.fold(0.0, f64::max);
+        let known = self.nodes.iter().zip(pressures).filter_map(|(node, pressing)| Some((*node, pressing?)));
+        let directed = |(node, pressing): (usize, Pressing)| {
+            let force = if pressing.force.norm() > round_off { pressing.force } else { Vector::ZERO };
+            (node, Pressing { force, ..pressing })
+        };
+        known.map(directed).collect()
     }
 
     /// The forces Fᵢ from nodal forces.
@@ -290,7 +302,8 @@ impl Pressures {
         self.along(contact, node, |pressing| pressing.actual)
     }
 
-    /// The same per area of the reference surface, of contacts with a pressure field.
+    /// Pressure at a node in the direction of a contact, per area of the reference surface, of
+    /// contacts with a pressure field.
     pub fn nominal(&self, contact: usize, node: usize) -> f64 {
         self.along(contact, node, |pressing| pressing.nominal)
     }

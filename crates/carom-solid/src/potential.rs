@@ -16,7 +16,9 @@ use crate::points::{four, lanes};
 #[derive(Clone, Copy)]
 pub(crate) struct Potential<'a, const D: usize> {
     pub(crate) law: &'a dyn Pointwise<D>,
+    /// Memory of these points at the start of a step.
     pub(crate) past: Past<'a>,
+    /// Count of points.
     pub(crate) count: usize,
 }
 

@@ -256,7 +256,7 @@ impl NodeToObstacle {
     }
 
     /// Global numbers of the nodes that carry the obstacle.
-    pub(super) fn carriers(&self) -> &[usize] {
+    pub fn carriers(&self) -> &[usize] {
         self.carrier.as_ref().map_or(&[], |carrier| &carrier.nodes)
     }
 

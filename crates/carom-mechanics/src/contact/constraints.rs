@@ -121,7 +121,9 @@ impl Constraints {
         let places = slips.independent(equations, evaluation);
         constraints.dropped = slips.dropped(evaluation, &places);
         let depends = |&(k, p): &(usize, usize)| {
-            model.contacts[k].interface.is_constraint() && places.binary_search(&(k, p, 0)).is_err()
+            let contact = &model.contacts[k];
+            let is_row = contact.interface.is_constraint() && contact.augmentation.is_none();
+            is_row && places.binary_search(&(k, p, 0)).is_err()
         };
         constraints.dependent = evaluation.pressing().filter(depends).collect();
         for (k, p, number) in places {

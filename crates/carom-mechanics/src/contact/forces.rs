@@ -3,6 +3,7 @@
 
 use carom_contact::{ContactError, Direction, Pair, Point, Rows};
 
+use crate::contact::update::INITIAL_GAP;
 use crate::rejected::Rejected;
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
@@ -61,7 +62,12 @@ impl Equations<'_> {
         let start = pair.start.unwrap_or(f64::INFINITY);
         let stiffness = self.augmentation(k, pair, evaluation.at.stiffer).map_or(0.0, |springs| springs[0]);
         let Pair { node, lambda, active, multiplier, .. } = *pair;
-        let point = Point { node, gap, start, lambda, active, multiplier, stiffness };
+        // Before the first load step a spring that touches has no force, and holds a body on it.
+        let begins = self.stage.is_static() && self.state.step == 0;
+        let touches = active && begins && !contact.interface.is_constraint();
+        let is_round_off = (0.0..=INITIAL_GAP * self.model.scale).contains(&gap);
+        let pressed = if touches && is_round_off { -f64::MIN_POSITIVE } else { gap };
+        let point = Point { node, gap: pressed, start, lambda, active, multiplier, stiffness };
         let answer = contact.interface.respond(&point);
         (pair.active, pair.lambda) = (answer.active, answer.lambda);
         if direction == Direction::DiscreteGradient {

@@ -19,7 +19,7 @@ use crate::timings::timed;
 use crate::workspace::Workspace;
 
 /// Gap, as a fraction of L, of nodes in contact before the first load step.
-const INITIAL_GAP: f64 = 1e-9;
+pub(super) const INITIAL_GAP: f64 = 1e-9;
 
 /// Correction, relative to L, below which facets are handed over before convergence.
 const CLOSE: f64 = 1e-5;
@@ -114,14 +114,15 @@ impl<'a> ContactUpdate<'a> {
     /// Returns whether there are any.
     pub(crate) fn activate_initial(&self, now: &mut Evaluation) -> bool {
         let Equations { model, stage, .. } = self.equations;
-        if !stage.is_static() || model.unconstrained.is_empty() || now.pressing().next().is_some() {
+        // A spring that is compressed by round-off does not press.
+        let presses = |(k, p): (usize, usize)| {
+            model.contacts[k].interface.is_constraint() || now.rows[k].row(p).gap < -INITIAL_GAP * model.scale
+        };
+        if !stage.is_static() || model.unconstrained.is_empty() || now.pressing().any(presses) {
             return false;
         }
         let mut changed = false;
-        // A spring exerts no force before it is compressed.
-        let constraints =
-            model.contacts.iter().enumerate().filter(|(_, contact)| contact.interface.is_constraint());
-        for (k, contact) in constraints {
+        for (k, contact) in model.contacts.iter().enumerate() {
             for (pair, row) in now.at.pairings[k].pairs.iter_mut().zip(now.rows[k].iter()) {
                 if contact.kinematics.nearest(pair, row.gap, &now.y) <= INITIAL_GAP * model.scale {
                     (pair.active, changed) = (true, true);

@@ -129,6 +129,9 @@ fn the_window_may_lie_between_rows() {
     assert_eq!(peak_mean(&times, &[&impulse], 2.0), Some(2.0));
     assert_eq!(peak_mean(&times, &[&impulse, &impulse], 1.0), Some(f64::hypot(3.0, 3.0)));
     assert_eq!(peak_mean(&times, &[&impulse], 4.0), None);
+    // The largest window ends at a row and begins between rows: from 0.5 to 2, 0.5 · 1 + 3 in all.
+    let mean = peak_mean(&[0.0, 1.0, 2.0, 4.0], &[&[0.0, 1.0, 4.0, 4.0]], 1.5).unwrap();
+    assert!((mean - 7.0 / 3.0).abs() < 1e-15);
 }
 
 #[test]

@@ -83,9 +83,8 @@ impl Bodies<'_> {
         let single =
             Combined::both(against(ours, &opposite, &side), against(theirs, &side, &opposite).reversed());
         let mortar = integrated(spec, Mortar::new(opposite, side, self.reference, both));
-        let is_held = |&node: &usize| self.fixed[2 * node] && self.fixed[2 * node + 1];
-        let stands = primary.nodes.iter().all(is_held);
-        Box::new(Combined::both(if stands { self.without_held(spec, mortar) } else { mortar }, single))
+        let mortar = self.without_held(spec, mortar, &primary.nodes);
+        Box::new(Combined::both(mortar, single))
     }
 
     fn in_space(&self, k: usize, secondary: &Side, primary: &Side) -> Combined {
@@ -153,17 +152,20 @@ impl Bodies<'_> {
         let single = self.others(side, &[], side, &surface.corners(self.reference));
         let single = bounded(spec, single, self.depth_in(side));
         let single = obstacle.of_nodes(&single);
+        let carriers = obstacle.carriers().to_vec();
         let mortar = integrated(spec, Mortar::with_obstacle(surface, obstacle, self.reference));
-        let mortar = self.without_held(spec, mortar);
+        let mortar = self.without_held(spec, mortar, &carriers);
         let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(mortar), Box::new(single)];
         parts.extend(tips.map(|tips| Box::new(tips) as Box<dyn Kinematics>));
         Box::new(Combined::new(parts))
     }
 
-    /// Springs press on a node that is held, multipliers do not.
-    fn without_held(&self, spec: &ContactSpec, mortar: Mortar) -> Mortar {
+    /// A mortar contact by multipliers without those of nodes that are not free, if no node of the
+    /// opposite side is. Springs press on nodes that are held, too.
+    fn without_held(&self, spec: &ContactSpec, mortar: Mortar, opposite: &[usize]) -> Mortar {
+        let stands = opposite.iter().all(|node| self.fixed[2 * node] && self.fixed[2 * node + 1]);
         let multipliers = spec.enforcement == case::Enforcement::Multiplier;
-        if multipliers { mortar.without_held(self.fixed) } else { mortar }
+        if stands && multipliers { mortar.without_held(self.fixed) } else { mortar }
     }
 
     /// Whether a node over a joint has a pair with one facet: springs chatter, and load steps in

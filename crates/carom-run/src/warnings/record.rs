@@ -190,6 +190,7 @@ pub(super) fn dependent_gaps(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     for event in events(run, "dependent") {
         let places = event.data.get("places").and_then(|places| places.as_str()).unwrap_or_default();
         places.split(", ").for_each(|place| steps.entry(place).or_default().push(event.time));
+        steps.values_mut().for_each(Vec::dedup);
     }
     steps.retain(|_, times| times.len() >= least);
     let Some(first) = steps.values().flatten().copied().reduce(f64::min) else { return Vec::new() };

@@ -114,14 +114,16 @@ scheme = {{ kind = "static" }}
         simulation(&text(axis, 0.6), &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("body \"disc\" is free to move along y"), "{stopped}");
     assert!(stopped.contains("a support that moves"), "{stopped}");
-    // In contact, it rests on the floor with its weight.
-    let sim = finish(simulation(&text(axis, 0.5), &[""; 0]));
-    let weight: f64 = sim.model().gravity.iter().skip(1).step_by(2).sum();
-    assert!(
-        (sim.state().contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
-        "{:?} {weight}",
-        sim.state().contact_forces
-    );
+    // In contact, it rests on the floor with its weight, also on springs.
+    for springs in [&[][..], &["contact.floor.enforcement=penalty"]] {
+        let sim = finish(simulation(&text(axis, 0.5), springs));
+        let weight: f64 = sim.model().gravity.iter().skip(1).step_by(2).sum();
+        assert!(
+            (sim.state().contact_forces[0][1] + weight).abs() < 1e-9 * weight.abs(),
+            "{:?} {weight}",
+            sim.state().contact_forces
+        );
+    }
 }
 
 /// A strut compressed by a fifth, far beyond its buckling loads: the straight equilibrium is

@@ -22,11 +22,13 @@ impl<'a> Past<'a> {
 
     /// The memory of one of many points or cells with `size` numbers each.
     pub(crate) fn part(&self, index: usize, size: usize) -> Self {
-        self.within(&(index * size..(index + 1) * size))
+        let memory = self.memory.get(index * size..(index + 1) * size).unwrap_or(&[]);
+        Self { memory, ..*self }
     }
 
-    /// Some of the numbers.
+    /// Some of the numbers; none of a law without memory.
     pub(crate) fn within(&self, range: &Range<usize>) -> Self {
-        Self { memory: self.memory.get(range.clone()).unwrap_or(&[]), ..*self }
+        let memory = if range.is_empty() { &[] } else { &self.memory[range.clone()] };
+        Self { memory, ..*self }
     }
 }

@@ -45,7 +45,7 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
         memory: &mut [f64],
     ) -> Result<AtFour<D>, NotPositive>;
 
-    /// Energies, P and ∂P/∂F.
+    /// Energies, P and ∂P/∂F; not [`AtFour::released`].
     fn tangents(
         &self,
         h: &Mats<D>,

@@ -17,12 +17,12 @@ pub(super) struct Step<'a, const D: usize> {
     pub(super) cell: usize,
     /// Memory of the cell's points at the start of the step.
     pub(super) past: Past<'a>,
-    /// The same at the end of the step; not asked for if empty.
+    /// Memory of these points at the end of the step; not asked for if empty.
     pub(super) memory: &'a mut [f64],
 }
 
 impl<'a, const D: usize> Step<'a, D> {
-    /// Of a law without memory.
+    /// A law without memory in a cell.
     pub(super) fn elastic(law: &'a dyn Pointwise<D>, cell: usize) -> Self {
         Self { law, cell, past: Past::default(), memory: &mut [] }
     }

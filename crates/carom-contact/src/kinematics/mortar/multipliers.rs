@@ -94,13 +94,14 @@ pub(super) fn multipliers(side: &Surface, reference: &[f64]) -> Vec<Multiplier> 
                 at_start[next] = Some(number);
             }
             let rule = quadrature::line(2 * side.shape.degree() + degree);
+            let of = &mut all[number];
             let mut area = 0.0;
             for (xi, weight) in rule.iter() {
                 let measure = side.facet(facet).at(y, xi[0]).measure;
-                area += weight * measure * bernstein(degree, polynomial, xi[0]);
+                let part = weight * measure * bernstein(degree, polynomial, xi[0]);
+                area += part;
+                of.area += part;
             }
-            let of = &mut all[number];
-            of.area += area;
             of.parts.push(Part { facet, polynomial, area });
             for &node in nodes {
                 if !of.nodes.contains(&node) {
@@ -113,7 +114,8 @@ pub(super) fn multipliers(side: &Surface, reference: &[f64]) -> Vec<Multiplier> 
 }
 
 /// Adds the polynomials of degree 1 of nodes that are held along the normal to those of the other
-/// ends of their facets; `fixed`: by dof, whether a support holds it.
+/// ends of their facets; a facet of which both ends are held keeps both. `fixed`: by dof, whether a
+/// support holds it.
 pub(super) fn without_held(
     mut all: Vec<Multiplier>,
     side: &Surface,
@@ -129,32 +131,18 @@ pub(super) fn without_held(
         })
     };
     let held: Vec<bool> = all.iter().map(is_held).collect();
-    // First beside coefficients that remain, then beside those that have gained a facet.
-    loop {
-        let mut gained: Vec<(usize, Part)> = Vec::new();
-        for part in (0..all.len()).filter(|&of| held[of]).flat_map(|of| &all[of].parts) {
-            let is_opposite =
-                |other: &Part| other.facet == part.facet && other.polynomial + part.polynomial == 1;
-            let opposite = all.iter().position(|of| of.parts.iter().any(is_opposite));
-            gained.extend(opposite.filter(|&of| !held[of]).map(|of| (of, *part)));
-        }
-        if gained.is_empty() {
-            break;
-        }
-        for (of, part) in gained {
-            let is_other = |own: &Part| (own.facet, own.polynomial) != (part.facet, part.polynomial);
-            all.iter_mut().for_each(|of| of.parts.retain(is_other));
-            all[of].parts.push(part);
-        }
+    let mut gained: Vec<(usize, Part)> = Vec::new();
+    for part in (0..all.len()).filter(|&of| held[of]).flat_map(|of| &all[of].parts) {
+        let is_opposite = |other: &Part| other.facet == part.facet && other.polynomial + part.polynomial == 1;
+        let opposite = all.iter().position(|of| of.parts.iter().any(is_opposite));
+        gained.extend(opposite.filter(|&of| !held[of]).map(|of| (of, *part)));
+    }
+    for (of, part) in gained {
+        let is_other = |own: &Part| (own.facet, own.polynomial) != (part.facet, part.polynomial);
+        all.iter_mut().for_each(|of| of.parts.retain(is_other));
+        all[of].parts.push(part);
+        all[of].area += part.area;
     }
     all.retain(|of| !of.parts.is_empty());
-    for of in &mut all {
-        of.area = of.parts.iter().map(|part| part.area).sum();
-        for node in of.parts.iter().flat_map(|part| side.facet(part.facet).nodes) {
-            if !of.nodes.contains(node) {
-                of.nodes.push(*node);
-            }
-        }
-    }
     all
 }

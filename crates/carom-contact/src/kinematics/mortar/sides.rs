@@ -119,8 +119,8 @@ impl Mortar {
     }
 
     /// With multipliers that leave the nodes of facets of degree 1 that supports hold along the
-    /// normal to their neighbours; `fixed`: by dof, whether a support holds it. For an opposite
-    /// side that does not move: otherwise its motion tells their gaps apart.
+    /// normal to their neighbours; `fixed`: by dof, whether it is not free. For an opposite side
+    /// without free dofs: otherwise its motion tells their gaps apart.
     #[must_use]
     pub fn without_held(mut self, fixed: &[bool]) -> Self {
         if self.secondary.shape().degree() == 1 {
