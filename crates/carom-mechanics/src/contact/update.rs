@@ -4,11 +4,13 @@
 use std::collections::BTreeSet;
 
 use carom_contact::{
-    ActiveSet, Contender, FrictionPair, FrictionState, Pair, PairEvent, Pairing, Row, StickSlip,
+    ActiveSet, Along, Contender, FrictionPair, FrictionState, Pair, PairEvent, Pairing, Row, StickSlip,
+    inner, length,
 };
 
 use crate::contact::augmented;
 use crate::contact::constraints::Constraints;
+use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::rounds::Rounds;
 use crate::linear::system::System;
 use crate::model::{Contact, Model};
@@ -20,6 +22,9 @@ use crate::workspace::Workspace;
 
 /// Gap, as a fraction of L, of nodes in contact before the first load step.
 pub(super) const INITIAL_GAP: f64 = 1e-9;
+
+/// Traction over the cone that stands for a slip that a support enforces.
+const BEYOND: f64 = 2.0;
 
 /// Correction, relative to L, below which facets are handed over before convergence.
 const CLOSE: f64 = 1e-5;
@@ -282,6 +287,7 @@ impl<'a> ContactUpdate<'a> {
     fn change_holds(&mut self, evaluation: &mut Evaluation, settled: bool) -> Result<bool, Rejected> {
         let equations = self.equations;
         let mut changed = false;
+        let dragged = if settled { dragged(equations, evaluation) } else { BTreeSet::new() };
         for (k, contact) in equations.model.contacts.iter().enumerate() {
             if contact.friction.is_none() {
                 continue;
@@ -297,7 +303,15 @@ impl<'a> ContactUpdate<'a> {
                 } else {
                     sticks && settled
                 };
-                (pair.active && rubs).then(|| equations.rubs(evaluation, (k, p)))
+                let rubs = (pair.active && rubs).then(|| equations.rubs(evaluation, (k, p)))?;
+                if dragged.contains(&(k, p)) {
+                    let size = length(rubs.slip);
+                    return Some(FrictionPair {
+                        traction: rubs.slip.map(|s| BEYOND * rubs.cone * s / size),
+                        ..rubs
+                    });
+                }
+                Some(rubs)
             };
             // Pairs that were found since the evaluation have no rows yet.
             let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
@@ -316,4 +330,28 @@ impl<'a> ContactUpdate<'a> {
         }
         Ok(changed)
     }
+}
+
+/// Sticks whose slip is not a row of the system, because supports determine it, and which it does
+/// not keep: supports drag them along the surface.
+fn dragged(equations: &Equations, evaluation: &Evaluation) -> BTreeSet<(usize, usize)> {
+    let model = equations.model;
+    let slides = |&(k, p): &(usize, usize)| {
+        let contact = &model.contacts[k];
+        let pair = &evaluation.at.pairings[k].pairs[p];
+        let sticks = contact.friction.is_some() && pair.tangential.friction_state == FrictionState::Stick;
+        let is_held = sticks && contact.augmentation.is_none() && equations.stick_spring(k, pair).is_none();
+        is_held && p < evaluation.rows[k].len() && length(evaluation.slip_of((k, p))) > model.gap_tolerance
+    };
+    let sliding: BTreeSet<_> = evaluation.pressing().filter(slides).collect();
+    if sliding.is_empty() {
+        return sliding;
+    }
+    let slips = PreventedSlips::of(equations, evaluation);
+    let rows = slips.independent(equations, evaluation);
+    let dropped = slips.dropped(evaluation, &rows);
+    let along = |&(place, along): &((usize, usize), Along)| {
+        sliding.contains(&place) && inner(along, evaluation.slip_of(place)).abs() > model.gap_tolerance
+    };
+    dropped.iter().filter(|of| along(of)).map(|(place, _)| *place).collect()
 }

@@ -10,10 +10,11 @@
 //! For an impulse x is a change of velocity, and H x − b the slip rate after it. For accelerations
 //! it is the rate of change of the slip rate, which decides for pairs that have none; others slip
 //! in their direction, or in that of the step before. All rows are equalities, as without friction:
-//! a closed gap stays closed, and one whose p is tensile remains closed: it sticks with |q| ≤ μp,
-//! or slips with q = −μp d. So the solution depends continuously on μ, and tangential impulses are
-//! at most μ times the normal ones. For accelerations `persistency.rs` chooses pairs of which none
-//! pulls.
+//! a closed gap stays closed, and one whose p is tensile remains closed: it slips with q = −μp d,
+//! or sticks with any q. Such an impulse takes back a part of that of the step, as where the
+//! midpoint rule has reversed the velocity, and friction is taken back with it: of a slip in the
+//! same direction, or of a stick, whose slip rate the step has reversed, too. For accelerations
+//! `persistency.rs` chooses pairs of which none pulls.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -355,7 +356,11 @@ impl Closed {
             let rub = |i: usize| {
                 let way = ways[i];
                 let law = laws[i]?;
-                let cone = law.grip(motion.normal[i].abs());
+                let traction = length(motion.tangential[i]);
+                // A tensile impulse takes back what the step did in excess, and so does friction
+                // of a pair that stuck in it.
+                let takes_back = motion.normal[i] > 0.0 && way.friction_state == FrictionState::Stick;
+                let cone = if takes_back { traction } else { law.grip(motion.normal[i].abs()) };
                 // What is no slip to round-off has no direction.
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);
                 let slip =

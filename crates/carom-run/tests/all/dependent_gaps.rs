@@ -151,3 +151,25 @@ fn pressures_on_a_side_with_held_ends_do_not_oscillate() {
         assert!((force(&run) / force(&fine) - 1.0).abs() < 0.06, "{element}");
     }
 }
+
+/// A support that drags a side along the surface after its corner has stuck does not take the
+/// friction from the corner: in full slip all is μ times the load, 0.21 · 2 · 1.3.
+#[test]
+fn a_support_that_moves_along_the_surface_drags_its_node() {
+    let side = "on = [\"a.left\"]\nfix = [\"y\"]";
+    let moved = "on = [\"a.left\"]\nmove = { x = \"-0.1*max(t-1,0)\" }";
+    let dragged = GUIDED.replace(side, moved).replace("0.6*min(max(t-1,0),1)", "0");
+    for method in ["node-to-segment", "mortar"] {
+        for scheme in ["kind = \"static\"", "kind = \"backward-euler\""] {
+            let sets = [
+                format!("contact.c.method={method}"),
+                format!("time.scheme={{ {scheme} }}"),
+                "material.m.density=1e-4".to_owned(),
+                "time.step=0.05".to_owned(),
+            ];
+            let run = record(&dragged, &sets.each_ref().map(String::as_str));
+            let force = run.column("contact_force_x").unwrap().last().unwrap().abs();
+            assert!((force / (MU * 2.0 * 1.3) - 1.0).abs() < 2e-3, "{method} {scheme}: {force}");
+        }
+    }
+}

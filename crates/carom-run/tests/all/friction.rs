@@ -5,6 +5,7 @@ use carom_contact::{FrictionState, Pair};
 use carom_run::{GridReport, Simulation, State};
 
 use super::common::{DISCS, change, finish, momenta, resumes_with_the_same_bits, simulation};
+use super::rebound::record;
 
 /// One of every family.
 pub(super) const SCHEMES: [&str; 8] = [
@@ -508,3 +509,55 @@ fn a_block_whose_support_leaves_a_rotation_to_first_order_is_pressed_on_a_rough_
     // The load, once the block rests: backward Euler damps its vibration.
     assert!((force.abs() - 1.0).abs() < 1e-3, "{force}");
 }
+
+/// A block that strikes a plane with v_t = μ v_n, at the edge between stick and slip: friction
+/// takes energy, and its impulse is at most μ times the normal one in every row.
+#[test]
+fn friction_at_the_edge_of_stick_takes_energy() {
+    let midpoint = "kind = \"energy-momentum\"";
+    let trapezoidal = "kind = \"newmark\", rho_inf = 1.0";
+    for (scheme, element) in [(midpoint, "T6"), (midpoint, "T3"), (trapezoidal, "T6")] {
+        for enforcement in ["multiplier", "augmented"] {
+            let sets = [
+                format!("time.scheme={{ {scheme} }}"),
+                format!("body.a.element={element}"),
+                format!("contact.c.enforcement={enforcement}"),
+            ];
+            let run = record(OBLIQUE, &sets.each_ref().map(String::as_str));
+            let column = |name: &str| run.column(name).unwrap();
+            let work = column("friction_work").iter().copied().fold(0.0, f64::max);
+            assert!(work < 1e-6, "{scheme} {element} {enforcement}: {work}");
+            for (along, across) in column("contact_impulse_x").iter().zip(column("contact_impulse_y")) {
+                assert!(
+                    along.abs() <= 0.6 * across + 1e-9,
+                    "{scheme} {element} {enforcement}: {along} {across}"
+                );
+            }
+        }
+    }
+}
+
+const OBLIQUE: &str = r#"
+dimension = 2
+plane = "stress"
+thickness = 0.6
+material = [{ name = "m", law = "neo-hookean", density = 1.3, young = 100.0, poisson = 0.3 }]
+[[body]]
+name = "a"
+material = "m"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.5, 0.4], cells = [6, 2] }
+velocity = [0.6, -1.0]
+place = { shift = [0.0, 0.01] }
+[[contact]]
+name = "c"
+secondary = "a.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+mu = 0.6
+[time]
+end = 0.02
+step = 0.001
+scheme = { kind = "energy-momentum" }
+[output]
+fields_every = 0
+"#;
