@@ -281,7 +281,7 @@ pub struct Pressures {
     contacts: Vec<BTreeMap<usize, Pressing>>,
 }
 
-/// What presses on a node.
+/// Pressures of a contact on a node.
 #[derive(Clone, Copy)]
 struct Pressing {
     /// Pressure per area of the deformed surface.

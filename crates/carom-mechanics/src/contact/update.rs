@@ -293,9 +293,9 @@ impl<'a> ContactUpdate<'a> {
                 continue;
             }
             let rub = |(p, pair): (usize, &Pair)| {
-                // One that has just closed has no pressure yet. One whose gap others keep closed,
-                // as a support or a tie does, has none when Newton's method has converged, and
-                // cannot stick. What slips without friction or pressure continues to do so.
+                // A pair that has just closed has no pressure yet. A pair whose gap others keep
+                // closed, as a support or a tie does, has none when Newton's method has converged,
+                // and cannot stick. A slip without friction or pressure goes on.
                 let presses = pair.lambda != 0.0;
                 let sticks = pair.tangential.friction_state == FrictionState::Stick;
                 let rubs = if presses {

@@ -33,7 +33,7 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::ENERGY_DEGREE`].
     fn energy_degree(&self) -> usize;
 
-    /// What discrete gradients depend on.
+    /// Properties of the law on which discrete gradients depend.
     fn traits(&self) -> Traits;
 
     /// Energies and P.
