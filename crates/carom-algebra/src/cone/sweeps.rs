@@ -16,6 +16,7 @@
 use super::Couplings;
 use super::exact::{State, second, settle};
 use super::kind::Kind;
+use super::pivoting;
 use crate::linear::LinearError;
 use crate::sums::max_abs;
 
@@ -23,12 +24,15 @@ use crate::sums::max_abs;
 const SWEEPS: usize = 10;
 /// Largest number of attempts to solve the problem exactly.
 const ATTEMPTS: usize = 200;
-/// Number of attempts from which on the way of a sweep is followed further.
+/// Number of attempts from which on the way of a sweep is followed further, and all normal forces
+/// are solved for together.
 const PATIENCE: usize = 10;
 /// Longest way, in those of one sweep, that is followed at once.
 const FARTHEST: f64 = 65536.0;
 /// Violation of the law, relative to the largest force or motion, that is round-off.
 const ROUND_OFF: f64 = 1e-11;
+/// Bisections for the first forces on a way that are not admissible.
+const BISECTIONS: usize = 52;
 /// Number of projections of a tangential vector in each sweep.
 const PROJECTIONS: usize = 4;
 /// Distance from the edge of the friction cone, relative to its radius, at which a vector slips.
@@ -117,20 +121,89 @@ impl Coupled<'_> {
     /// Overwrites `z`, a first guess, with the solution of the coupled problem.
     fn solve(&self, z: &mut Vec<f64>) -> Result<(), LinearError> {
         let n = self.kinds.len();
+        let mut pressed = Vec::new();
         for attempt in 0..ATTEMPTS {
+            if attempt == PATIENCE {
+                pressed.clone_from(z);
+            }
             if attempt >= PATIENCE {
-                self.leap(z);
+                self.leap(z, Self::sweep);
+                self.leap(&mut pressed, Self::press);
+                (0..SWEEPS).for_each(|_| self.press(&mut pressed));
             }
             (0..SWEEPS).for_each(|_| self.sweep(z));
-            let mut states: Vec<State> = (0..n).map(|i| self.state(z, i)).collect();
-            let Some(exact) = settle(self.a, self.b, self.kinds, &mut states, z) else { continue };
-            if self.obeys(&exact, &states) {
+            let of_pressed = || if attempt < PATIENCE { None } else { self.walked(&pressed) };
+            if let Some(exact) = self.settled(z).or_else(of_pressed) {
                 *z = exact;
                 self.admit(z);
                 return Ok(());
             }
         }
         Err(LinearError::NoStates { forces: n, sweeps: ATTEMPTS * SWEEPS })
+    }
+
+    /// The exact solution for the states of these forces, if it obeys the law.
+    fn settled(&self, z: &[f64]) -> Option<Vec<f64>> {
+        let (exact, obeys) = self.exact(z)?;
+        obeys.then_some(exact)
+    }
+
+    /// The exact solution for the states of these forces, and whether it obeys the law.
+    fn exact(&self, z: &[f64]) -> Option<(Vec<f64>, bool)> {
+        let mut states: Vec<State> = (0..self.kinds.len()).map(|i| self.state(z, i)).collect();
+        let exact = settle(self.a, self.b, self.kinds, &mut states, z)?;
+        let obeys = self.obeys(&exact, &states);
+        Some((exact, obeys))
+    }
+
+    /// The exact solution for the states of these forces; while it does not obey the law, that for
+    /// those of the first forces on the way there that are not admissible: of contacts that depend
+    /// on each other it lies far beyond their cones.
+    fn walked(&self, z: &[f64]) -> Option<Vec<f64>> {
+        let mut now = z.to_vec();
+        for _ in &self.kinds[..] {
+            let (exact, obeys) = self.exact(&now)?;
+            if obeys {
+                return Some(exact);
+            }
+            let at = |share: f64| -> Vec<f64> {
+                now.iter().zip(&exact).map(|(from, to)| from + share * (to - from)).collect()
+            };
+            let mut admissible = 0.0;
+            let mut share = 1.0;
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (admissible + share);
+                let forces = at(middle);
+                let mut admitted = forces.clone();
+                self.admit(&mut admitted);
+                if admitted == forces {
+                    admissible = middle;
+                } else {
+                    share = middle;
+                }
+            }
+            now = at(share);
+            self.admit(&mut now);
+        }
+        None
+    }
+
+    /// Lets all normal forces follow the tangential ones together, by pivoting, and these then
+    /// follow in a sweep: of contacts that depend on each other, those that are not needed open,
+    /// which single forces never find.
+    fn press(&self, z: &mut [f64]) {
+        let n = self.kinds.len();
+        let normals: Vec<usize> =
+            (0..n).filter(|&i| self.kinds[i] == Kind::Normal && self.diagonal(i) > 0.0).collect();
+        let entries = normals.iter().flat_map(|&i| normals.iter().map(move |&j| self.a[i * n + j]));
+        let matrix = Couplings::dense(normals.len(), entries.collect());
+        let before: Vec<f64> = normals.iter().map(|&i| std::mem::take(&mut z[i])).collect();
+        let right: Vec<f64> = normals.iter().map(|&i| self.motion(z, i)).collect();
+        let mut forces = Vec::new();
+        let solved = pivoting::complementarity(&matrix, &right, &mut forces);
+        let forces = if solved.is_ok() { forces } else { before };
+        normals.iter().zip(&forces).for_each(|(&i, &force)| z[i] = force);
+        self.follow(z, |i| self.kinds[i] != Kind::Normal);
     }
 
     /// Motion u_i along the i-th force for forces z.
@@ -162,7 +235,12 @@ impl Coupled<'_> {
 
     /// A sweep of the nonlinear Gauss–Seidel method over all forces.
     fn sweep(&self, z: &mut [f64]) {
-        for i in (0..self.kinds.len()).filter(|&i| !self.is_second(i)) {
+        self.follow(z, |_| true);
+    }
+
+    /// Lets each of some forces follow the others in turn.
+    fn follow(&self, z: &mut [f64], is_chosen: impl Fn(usize) -> bool) {
+        for i in (0..self.kinds.len()).filter(|&i| is_chosen(i) && !self.is_second(i)) {
             if let Some(other) = second(self.kinds, i) {
                 self.sweep_vector(z, [i, other]);
                 continue;
@@ -175,9 +253,9 @@ impl Coupled<'_> {
     /// Follows the way of a sweep, twice as far each time, while a sweep from there moves no force
     /// further than the first one did. Where rows of contacts depend on each other, forces that
     /// move nothing drift by the same amount in every sweep until another contact slips or opens.
-    fn leap(&self, z: &mut [f64]) {
+    fn leap(&self, z: &mut [f64], sweep: impl Fn(&Self, &mut [f64])) {
         let start = z.to_vec();
-        self.sweep(z);
+        sweep(self, z);
         let way: Vec<f64> = z.iter().zip(&start).map(|(now, start)| now - start).collect();
         let length = max_abs(&way) * (1.0 + ROUND_OFF);
         let mut far = start;
@@ -190,7 +268,7 @@ impl Coupled<'_> {
             }
             self.admit(&mut far);
             next.copy_from_slice(&far);
-            self.sweep(&mut next);
+            sweep(self, &mut next);
             let is_longer = far.iter().zip(&next).any(|(far, next)| (next - far).abs() > length);
             if is_longer {
                 return;

@@ -172,6 +172,11 @@ impl Kinematics for Combined {
         part.signed_distance(node, y)
     }
 
+    fn is_left(&self, node: usize, y: &[f64]) -> bool {
+        let (part, node) = self.of(node);
+        part.is_left(node, y)
+    }
+
     fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {
         self.parts[0].distance_to_obstacle(node, y)
     }

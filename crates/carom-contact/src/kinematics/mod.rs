@@ -143,6 +143,12 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// side, plus the depth that it keeps; `None` if no facet faces it.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64>;
 
+    /// Whether contact of a secondary node, given by index, with the facet that it faces is left to
+    /// a sharp edge of that facet, which the other direction of contact keeps out.
+    fn is_left(&self, _node: usize, _y: &[f64]) -> bool {
+        false
+    }
+
     /// Signed distance of any node, given by its global number, to a rigid obstacle; none of other
     /// primary sides.
     fn distance_to_obstacle(&self, _node: usize, _y: &[f64]) -> Option<f64> {

@@ -414,6 +414,14 @@ impl Penetration {
             {
                 limit = limit.max(model.contacts[k].depths.kinks * entered.length);
             }
+            if depth > limit
+                && watched.constrained
+                && of_node.is_none()
+                && let Some(k) = *contact
+                && is_left(&model.contacts[k], node, y)
+            {
+                limit = limit.max(model.contacts[k].depths.others * watched.length.max(entered.length));
+            }
             if depth > limit && found.beyond.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 let what = if watched.between.is_empty() { What::Node } else { What::Edge };
                 found.beyond = Some(Inside { node, what, depth, limit });
@@ -487,4 +495,11 @@ const CHORDS: f64 = 0.01;
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
     (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()
+}
+
+/// Whether a contact leaves a node that it constrains to a sharp edge that the node faces.
+fn is_left(contact: &Contact, node: usize, y: &[f64]) -> bool {
+    let kinematics = &contact.kinematics;
+    let mut places = kinematics.secondary().iter().take(kinematics.nodes()).enumerate();
+    places.any(|(place, &other)| other == node && kinematics.is_left(place, y))
 }

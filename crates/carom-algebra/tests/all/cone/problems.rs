@@ -85,3 +85,42 @@ fn brute_force(a: &[f64], b: &[f64], mu: f64) -> Vec<[f64; 4]> {
     }
     solutions
 }
+
+/// A node on three surfaces whose normals lie in one plane, rough on the first: of their rows any
+/// two normal ones determine the third, and with those the node sticks along the edge or not.
+#[test]
+fn a_node_on_three_surfaces_of_one_edge_obeys_the_law() {
+    let angles = [0.0_f64, 14.0, 45.0].map(f64::to_radians);
+    let normals = angles.map(|at| [at.cos(), at.sin(), 0.0]);
+    let rows = [normals.as_slice(), &[[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]].concat();
+    let matrix: Vec<f64> =
+        (0..25).map(|e| 1354.0 * (0..3).map(|i| rows[e / 5][i] * rows[e % 5][i]).sum::<f64>()).collect();
+    let rough = Kind::Tangential { of: 0, coefficient: 0.1, limit: f64::INFINITY };
+    let kinds = [Kind::Normal, Kind::Normal, Kind::Normal, rough, rough];
+    let mut sticks = 0;
+    for case in 0..40 {
+        // Along the edge it moves slowly; gaps are not quite those of one place.
+        let free = [-184.0, 77.0 - 7.0 * f64::from(case), 13.0];
+        let along = |row: &[f64; 3]| (0..3).map(|i| row[i] * free[i]).sum::<f64>();
+        let more = [0.0, 8e-5, -3e-7, 0.0, 0.0];
+        let right: Vec<f64> = rows.iter().zip(more).map(|(row, more)| along(row) + more).collect();
+        let mut z = Vec::new();
+        let couplings = &mut Couplings::dense(5, matrix.clone());
+        Cone { matrix: couplings, right: &mut right.clone(), kinds: &kinds, is_dependent: true }
+            .solve(&mut z)
+            .unwrap_or_else(|error| panic!("{case}: {error}"));
+        let u: Vec<f64> =
+            (0..5).map(|i| right[i] + (0..5).map(|j| matrix[i * 5 + j] * z[j]).sum::<f64>()).collect();
+        for i in 0..3 {
+            assert!(z[i] >= 0.0 && u[i] >= -1e-6 && z[i] * u[i].abs() < 1e-6, "{case}: {z:?} {u:?}");
+        }
+        let force = z[3].hypot(z[4]);
+        let slip = u[3].hypot(u[4]);
+        assert!(force <= 0.1 * z[0] * (1.0 + 1e-9), "{case}: {z:?}");
+        // Power −μ P |u|: against the slip, where there is one.
+        let power = z[3] * u[3] + z[4] * u[4];
+        assert!((power + 0.1 * z[0] * slip).abs() < 1e-6, "{case}: {z:?} {u:?}");
+        sticks += usize::from(z[0] > 0.0 && slip < 1e-5);
+    }
+    assert!((1..40).contains(&sticks), "{sticks}");
+}

@@ -134,10 +134,12 @@ impl NodeToPatch {
             })
         };
         let is_far = !presses(&normals, normal, BLUNT);
+        let here = place(y, node);
         sharp.any(|(edge, beyond)| {
             let (nodes, count) = self.primary.shape().edge(edge);
             let mut points = nodes.into_iter().take(count).map(|k| place(y, patch.nodes[k]));
-            (is_far || beyond > PAST) && points.any(meets)
+            let nearest = || patch.at(y, patch.along(edge, patch.nearest_on_edge(y, here, edge))).position;
+            (is_far || beyond > PAST) && points.any(meets) && meets(nearest())
         })
     }
 

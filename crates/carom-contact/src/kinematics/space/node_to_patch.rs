@@ -408,6 +408,11 @@ impl Kinematics for NodeToPatch {
         Some(gap + self.kept(node))
     }
 
+    fn is_left(&self, node: usize, y: &[f64]) -> bool {
+        let faced = self.faced(node, y);
+        faced.is_some_and(|(at, _)| self.is_left_to_edge(self.secondary[node], at, y))
+    }
+
     fn roundings(&self, y: &[f64]) -> Vec<f64> {
         if self.folds.is_some() || self.primary.shape().degree() != 1 {
             return Vec::new();

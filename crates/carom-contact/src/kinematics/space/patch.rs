@@ -270,7 +270,7 @@ impl Patch<'_> {
 
     /// Coordinate s of the nearest point of an edge: the best sample, refined between its
     /// neighbours by Newton's method guarded by bisection.
-    fn nearest_on_edge(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
+    pub(super) fn nearest_on_edge(&self, y: &[f64], from: Vector<3>, edge: usize) -> f64 {
         const PIECES: usize = 4;
         let (nodes, count) = self.shape.edge(edge);
         let slope = |s: f64| {
