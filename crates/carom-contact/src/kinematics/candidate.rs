@@ -185,7 +185,8 @@ impl NodeToFacet {
         let normals: Vec<_> = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal).collect();
         let corner = shape.at(y, if forward { 1.0 } else { -1.0 }).position;
         let meets = |&facet: &usize| {
-            let xi = own.facet(facet).closest_point(y, corner, 1.0);
+            // Below a dent the corner lies past the ends of both facets.
+            let xi = own.facet(facet).closest_point(y, corner, 1.0 + 2.0 * NEAR_END);
             let near = FLUSH * own.length(facet, y);
             xi.is_some_and(|xi| own.gap(facet, xi, corner, y).abs() <= near)
         };

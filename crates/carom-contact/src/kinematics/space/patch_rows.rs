@@ -58,12 +58,15 @@ impl OnFacets for NodeToPatch {
         if self.single || !(-AROUND_JOINT..=REACH).contains(&furthest) {
             return None;
         }
-        let mut joints = 0..2 * patch.corners() as u8;
-        let joint = joints.find(|&joint| self.past_joint(pair, joint, y) <= AT_JOINT)?;
         // A node may not meet every facet of a joint of its own side.
         let is_met = |&facet: &usize| self.may_take(self.secondary[pair.node], facet, y);
-        let meets_all = self.folds.is_none() || self.primary.joined(pair.facet, joint).iter().all(is_met);
-        (meets_all && self.is_blunt(pair.facet, joint, y)).then_some(joint)
+        // At a sharp edge, a blunt one may end.
+        let is_joint = |&joint: &u8| {
+            let meets_all =
+                || self.folds.is_none() || self.primary.joined(pair.facet, joint).iter().all(is_met);
+            self.past_joint(pair, joint, y) <= AT_JOINT && meets_all() && self.is_blunt(pair.facet, joint, y)
+        };
+        (0..2 * patch.corners() as u8).find(is_joint)
     }
 
     fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
