@@ -2,17 +2,9 @@
 //! minimum, so that what was lost before does not hide it. It is judged against the largest energy
 //! that was there or was supplied, max (kinetic + strain, Σ |ΔW_ext|).
 //!
-//! The α family carries the momentum c Δt M a in its accelerations, c = 1 − γ − α_m (`carried.rs`),
-//! which the kinetic energy of its velocities does not contain. A load or a support that changes by
-//! ΔF over a step does the work c Δy·ΔF on it. A rise by −Σ c Δy·ΔF is no creation: a wall of
-//! constant velocity V that presses with R lends −c Δt V R until it is left. For α_m = α_f = 0 and
-//! a linear body, with the scheme's own energy H (Krenk 2006),
-//!
-//! ```text
-//! Δ[E + ½ (β − γ/2) Δt² a·Ma] = −c Δy·ΔF − (γ − ½) [Δy·KΔy + (β − γ/2) Δt² Δa·MΔa]
-//! ```
-//!
-//! Schemes with c = 0 have no such work.
+//! In the α family, velocities take another share of a force that changes than the mean of both ends
+//! of the step with which it works (`works.rs`). A rise by what it does on them is no creation: a
+//! wall of constant velocity that strikes lends it until the accelerations are those of its force.
 
 use crate::state::{Created, Ledger};
 

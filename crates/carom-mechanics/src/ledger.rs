@@ -1,24 +1,10 @@
-//! The energy ledger of a step: exact for eq. (15), because it uses the same averaged forces.
-//!
-//! ```text
-//! F̄ = (1−α_f) F_{s+1} + α_f F_s,   Δy = y_{s+1} − y_s                    F̄ of other kernels: the mean of their velocity update, `Stage::mean`
-//! external_work += Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + Δy/Δt·M J        contact_work += −Δy·F̄_cont, friction_work its part of friction
-//! ```
-//!
-//! R̄ is the mean residual of the balance at prescribed dofs, their reaction force. J = v_{s+1} −
-//! v_s − Δt ā is the change of their velocities beyond their mean acceleration ā: where a
-//! prescribed velocity jumps, the impulse M J is a reaction too, and its work is that of the mean
-//! velocity. Load steps without inertia use the mean of both ends, F̄ = (F_{s+1} + F_s)/2: exact
-//! for forces linear in the displacements.
-//!
-//! The increment of the dissipation of the α family then equals (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa
-//! + Δt² (β−γ/2) Δa·M(a_s + γΔa) to round-off (Krenk 2006).
+//! The energy ledger of a step. Its works are found in `works.rs`, from the means over the step that
+//! are formed here or from the forces at both ends of the step.
 
 use std::borrow::Cow;
 
-use carom_algebra::sums::dot;
 use carom_contact::{Pair, Row, Rows};
-use carom_time::{Stage, Weights};
+use carom_time::Stage;
 
 use crate::contact::friction::secondary_friction;
 use crate::friction_state::each_slip;
@@ -27,6 +13,7 @@ use crate::stage::balance::mean_acceleration;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 use crate::state::{Means, Previous, State};
+use crate::works::{Works, work_ahead};
 
 /// Adds a solved stage to the means over the step (cleared before the first stage). `previous`: the
 /// previous step of a two-step scheme; `contact_forces`: those of [`contact_forces`], or projected.
@@ -39,19 +26,6 @@ pub(crate) fn add_stage(
 ) {
     let Equations { model, state, stage, .. } = equations;
     let [old, start, now] = stage.mean;
-    let before = previous.map(|previous| (old, &previous.means));
-    let contact =
-        Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
-    contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
-    if model.has_friction() {
-        means.friction.resize(model.dofs(), 0.0);
-        // A state of a case without friction has none.
-        let mut before = Cow::from(&state.f_friction);
-        if before.is_empty() {
-            before.to_mut().resize(model.dofs(), 0.0);
-        }
-        contact.add(model, stage, &solved.forces.friction, &before, &mut means.friction);
-    }
     for (k, contact) in model.contacts.iter().enumerate() {
         let (now, start) = if contact.at_the_end { (1.0, 0.0) } else { (now, start) };
         let force = contact_forces[k];
@@ -59,71 +33,32 @@ pub(crate) fn add_stage(
             means.contact_forces[k][i] += now * force[i] + start * state.contact_forces[k][i];
         }
     }
+    if stage.works_at_both_ends {
+        return;
+    }
+    let before = previous.map(|previous| (old, &previous.means));
+    let contact =
+        Shares { now: now / stage.weights.contact, start, massless: stage.weights.external.recip() };
+    contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
+    if model.has_friction() {
+        means.friction.resize(model.dofs(), 0.0);
+        contact.add(model, stage, &solved.forces.friction, &friction_of(model, state), &mut means.friction);
+    }
     if !model.loads.is_empty() {
-        let loads = match averaging(stage) {
-            Averaging::BothEnds => Shares { now: 0.5, start: 0.5, massless: 0.5 },
-            Averaging::Ends => Shares { now, start, massless: 1.0 },
-            Averaging::Within => {
-                Shares { now: stage.weights.external, start: stage.before.external, massless: 1.0 }
-            }
-        };
+        let loads = Shares { now, start, massless: 1.0 };
         loads.add(model, stage, &solved.forces.loads, &state.f_external, &mut means.loads);
     }
     if let Some((old, before)) = before {
         add_previous(model, old, before, means);
-    }
-    if model.remembers() {
-        means.internal.resize(model.dofs(), 0.0);
-        let internal = match averaging(stage) {
-            Averaging::BothEnds => Shares { now: 0.5, start: 0.5, massless: 0.5 },
-            Averaging::Ends => Shares { now, start, massless: 1.0 },
-            Averaging::Within => {
-                Shares { now: stage.weights.internal, start: stage.before.internal, massless: 1.0 }
-            }
-        };
-        internal.add(model, stage, &solved.forces.internal, &state.f_internal, &mut means.internal);
-        if let Some((old, before)) = before {
-            for (i, (mean, before)) in means.internal.iter_mut().zip(&before.internal).enumerate() {
-                *mean += if model.massless[i] { 0.0 } else { old * before };
-            }
-        }
     }
     if !equations.motions.is_empty() {
         add_supports(equations, solved, before, means);
     }
 }
 
-/// Work of the loads over a step of one stage with an averaged balance.
-pub(crate) fn work_of_loads(equations: &Equations, solved: &Evaluation) -> f64 {
-    let Equations { model, state, stage, .. } = equations;
-    if model.loads.is_empty() {
-        return 0.0;
-    }
-    let now = stage.weights.external;
-    let before = stage.before.external;
-    let forces = solved.forces.loads.iter().zip(&state.f_external);
-    let mean = forces.map(|(load, old)| now * load + before * old);
-    solved.at.increment.iter().zip(mean).map(|(moved, force)| moved * force).sum()
-}
-
-/// How the mean of a stage's forces is formed.
-enum Averaging {
-    /// Without inertia, the mean of both ends.
-    BothEnds,
-    /// The balance holds at the stage's end: [`Stage::mean`] weighs the ends.
-    Ends,
-    /// The balance itself is averaged.
-    Within,
-}
-
-fn averaging(stage: &Stage) -> Averaging {
-    if stage.is_static() {
-        Averaging::BothEnds
-    } else if stage.before == Weights::default() && stage.average == 0.0 {
-        Averaging::Ends
-    } else {
-        Averaging::Within
-    }
+/// Forces of friction at a state; a state of a case without friction has none.
+pub(crate) fn friction_of<'a>(model: &Model, state: &'a State) -> Cow<'a, [f64]> {
+    if state.f_friction.is_empty() { vec![0.0; model.dofs()].into() } else { (&state.f_friction[..]).into() }
 }
 
 /// Weights of a force at the stage's end and at the step's start; at massless dofs, which have
@@ -137,7 +72,7 @@ struct Shares {
 impl Shares {
     fn add(&self, model: &Model, stage: &Stage, now: &[f64], start: &[f64], mean: &mut [f64]) {
         for i in 0..mean.len() {
-            if !model.massless[i] || stage.is_static() {
+            if !model.massless[i] {
                 mean[i] += self.now * now[i] + self.start * start[i];
             } else if stage.end == 1.0 {
                 mean[i] = self.massless * now[i];
@@ -168,11 +103,7 @@ fn add_supports(
     means: &mut Means,
 ) {
     let Equations { model, state, stage, .. } = equations;
-    let (now, start) = match averaging(stage) {
-        Averaging::BothEnds => (0.5, 0.5),
-        Averaging::Ends => (stage.mean[2], stage.mean[1]),
-        Averaging::Within => (1.0, 0.0),
-    };
+    let [_, start, now] = stage.mean;
     // Residual at the step's start.
     let mut residual = vec![0.0; if start == 0.0 { 0 } else { model.dofs() }];
     if start != 0.0 {
@@ -180,16 +111,16 @@ fn add_supports(
     }
     for moved in &equations.motions {
         let i = moved.dof;
-        if model.massless[i] && !stage.is_static() {
+        if model.massless[i] {
             means.supports[i] = solved.residual[i] / stage.weights.external;
             continue;
         }
         means.supports[i] +=
             now * solved.residual[i] + residual.get(i).map_or(0.0, |residual| start * residual);
-        means.accelerations[i] += match averaging(stage) {
-            Averaging::BothEnds => 0.0,
-            Averaging::Ends => now * moved.motion[2] + start * state.a[i],
-            Averaging::Within => mean_acceleration(stage, moved.motion[2], state.a[i]),
+        means.accelerations[i] += if stage.average == 0.0 {
+            now * moved.motion[2] + start * state.a[i]
+        } else {
+            mean_acceleration(stage, moved.motion[2], state.a[i])
         };
         if let Some((old, before)) = before {
             means.supports[i] += old * before.supports[i];
@@ -199,38 +130,43 @@ fn add_supports(
 }
 
 /// Records a step in `next`, before any projection: `last` is its last stage, `strain` the bodies'
-/// energy at its end, `carried` the factor of the momentum in its accelerations.
+/// energy at its end.
 pub(crate) fn account(
     equations: &Equations,
     last: &Evaluation,
     next: &mut State,
     strain: f64,
     dt: f64,
-    (means, carried): (&Means, f64),
+    means: &Means,
 ) {
-    let Equations { model, state, .. } = equations;
+    let Equations { model, state, stage, .. } = equations;
     let increment = &last.at.increment;
-    for (moved, force) in increment.iter().zip(&means.contact) {
-        next.ledger.contact_work -= moved * force;
-    }
+    let works = if stage.works_at_both_ends {
+        Works::at_both_ends(equations, last, next, dt)
+    } else {
+        Works::of_means(equations, next, increment, dt, means)
+    };
+    next.ledger.external_work += works.external;
+    next.ledger.contact_work -= works.contact;
     if model.has_friction() {
-        let work = dot(increment, &means.friction);
         let stored = last.stick_springs - next.ledger.stick_springs;
-        next.ledger.contact_work += work - stored;
-        next.ledger.friction_work += stored - work;
+        next.ledger.contact_work += works.friction - stored;
+        next.ledger.friction_work += stored - works.friction;
         next.ledger.stick_springs = last.stick_springs;
     }
     // Spring energy is not lost: it is part of the strain energy.
     next.ledger.contact_work += last.springs - next.ledger.springs;
     next.ledger.springs = last.springs;
-    if !model.loads.is_empty() {
-        next.ledger.external_work += dot(increment, &means.loads);
+    if stage.works_at_both_ends && !stage.is_static() {
+        let mut changes = [change_of_loads(state, next, increment), 0.0];
+        if !equations.motions.is_empty() {
+            for (i, now) in next.f_at_end.iter().enumerate().filter(|(i, _)| model.fixed[*i]) {
+                changes[1] += increment[i] * (now - state.f_at_end.get(i).copied().unwrap_or(0.0));
+            }
+            changes[0] += change_of_reactions(model, state, next, increment) - changes[1];
+        }
+        next.ledger.unbooked += work_ahead(stage, dt, changes, &mut next.ledger.relaxing);
     }
-    if !equations.motions.is_empty() {
-        next.ledger.external_work += work_of_motions(equations, next, increment, dt, means);
-        next.ledger.unbooked -= carried * change_of_reactions(model, state, next, increment);
-    }
-    next.ledger.unbooked -= carried * change_of_loads(state, next, increment);
     book_contact_forces(model, next);
     for (impulse, mean) in next.impulses.iter_mut().zip(&means.contact_forces) {
         (0..3).for_each(|i| impulse[i] += dt * mean[i]);
@@ -249,23 +185,6 @@ pub(crate) fn balance_into(model: &Model, state: &State, a: &[f64], residual: &m
         *force += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
     }
     model.points.gather(residual);
-}
-
-/// Work of moving supports.
-fn work_of_motions(equations: &Equations, next: &State, increment: &[f64], dt: f64, means: &Means) -> f64 {
-    let Equations { model, state, stage, .. } = equations;
-    let sum = dot(increment, &means.supports);
-    if stage.is_static() {
-        return sum;
-    }
-    let mut jump = vec![0.0; increment.len()];
-    for i in model.motions.dofs() {
-        jump[i] = next.v[i] - state.v[i] - dt * means.accelerations[i];
-    }
-    model.points.carry(&mut jump);
-    let mut impulse = vec![0.0; increment.len()];
-    model.mass.multiply_into(&jump, &mut impulse);
-    sum + dot(increment, &impulse) / dt
 }
 
 /// Δy·ΔR of moving supports: as [`change_of_loads`]. The inertia of their own motion is known: its
@@ -319,9 +238,7 @@ pub fn secondary_force<'a>(pairs: &[Pair], rows: impl Iterator<Item = Row<'a>>) 
     force
 }
 
-/// Δy·ΔF of the loads: their work with the forces at the step's end minus that with the forces at
-/// its start. Times the factor of the momentum in accelerations, it is work on that momentum
-/// (`created.rs`).
+/// Δy·ΔF of the loads (`works.rs`).
 pub(crate) fn change_of_loads(state: &State, next: &State, increment: &[f64]) -> f64 {
     let forces = state.f_external.iter().zip(&next.f_external);
     increment.iter().zip(forces).map(|(moved, (before, now))| moved * (now - before)).sum()

@@ -31,6 +31,7 @@ pub mod substeps;
 mod timings;
 mod trace;
 pub mod velocity;
+mod works;
 mod workspace;
 
 pub use check::overlap::depths;

@@ -23,7 +23,7 @@ use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::state::{Carried, State};
 use crate::velocity::active_rows::measure_all;
-use crate::velocity::persistency::{self, averaged_contact_into};
+use crate::velocity::persistency::{self, contact_forces_into};
 
 /// The start of a run, if not the initial positions.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,7 +123,7 @@ pub fn start(
             state.pairs = pairs;
         }
     }
-    averaged_contact_into(model, &mut state, &gaps);
+    contact_forces_into(model, &mut state, &gaps);
     book_contact_forces(model, &mut state);
     state.carried = Carried::at_start(&state.contact_forces);
     book_kinetic(model, &mut state);

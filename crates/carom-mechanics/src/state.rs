@@ -29,10 +29,11 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads without potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// What that work lacks of the work on the momentum of velocities: the part on momentum in
-    /// accelerations (`created.rs`). Contact of explicit schemes adds the work of its forces over
+    /// What that work lacks of the work on the momentum of velocities (`works.rs`). Contact of explicit schemes adds the work of its forces over
     /// the tolerance of gaps.
     pub unbooked: f64,
+    /// Δy·x of forces from which accelerations still differ (`works.rs`).
+    pub relaxing: f64,
     /// Work of the contact forces on the bodies, and the jumps of kinetic energy at activation.
     pub contact_work: f64,
     /// Work of friction on the bodies.
@@ -143,8 +144,6 @@ pub struct Previous {
 #[derive(Debug, Default, Educe, PartialEq, Serialize, Deserialize)]
 #[educe(Clone)]
 pub struct Means {
-    /// Internal forces; empty if no material remembers.
-    pub internal: Vec<f64>,
     /// Contact forces.
     pub contact: Vec<f64>,
     /// The part of friction in them; empty without friction.
@@ -173,7 +172,6 @@ impl Means {
             mean.clear();
             mean.resize(dofs, 0.0);
         }
-        self.internal.clear();
         self.friction.clear();
         self.contact_forces.clear();
         self.contact_forces.resize(contacts, [0.0; 3]);
@@ -217,10 +215,12 @@ pub struct State {
     pub f_internal: Vec<f64>,
     /// Loads at `y` without gravity, for the next step.
     pub f_external: Vec<f64>,
-    /// Σ Gᵀλ of the contacts with averaged forces, for the next step.
+    /// Σ Gᵀλ of the contacts, for the next step.
     pub f_contact: Vec<f64>,
     /// The part of friction in it; empty without friction.
     pub f_friction: Vec<f64>,
+    /// The part in it of contacts that act entirely at the end of a step; empty without.
+    pub f_at_end: Vec<f64>,
     /// Force on the secondary side of each contact.
     pub contact_forces: Vec<[f64; 3]>,
     /// Impulse of each contact on its secondary side since the start, projections included.
@@ -267,8 +267,9 @@ impl State {
             always("accelerations", &mut self.a),
             always("internal forces", &mut self.f_internal),
             always("loads", &mut self.f_external),
-            always("averaged contact forces", &mut self.f_contact),
+            always("contact forces", &mut self.f_contact),
             may_lack("forces of friction", &mut self.f_friction),
+            may_lack("contact forces at the end of steps", &mut self.f_at_end),
             may_lack("velocities at half a step", &mut self.half_step.velocity),
         ];
         if let Some(Previous { increment, velocity, means, .. }) = &mut self.previous {
@@ -368,7 +369,7 @@ impl State {
     /// accelerations, internal forces, memory and half-step velocities are not copied: a step
     /// overwrites them. Contact forces are zero.
     pub(crate) fn follow(&mut self, start: &Self) {
-        let Self { step, time, y, f_external, f_friction, contact_forces, impulses, .. } = start;
+        let Self { step, time, y, f_external, f_friction, f_at_end, contact_forces, impulses, .. } = start;
         let Self { carried, pairs, ledger, previous, half_step, frozen, .. } = start;
         let Self { bisection, overlaps, materials, .. } = start;
         self.step = *step;
@@ -386,6 +387,7 @@ impl State {
         self.f_contact.fill(0.0);
         self.f_external.clone_from(f_external);
         self.f_friction.clone_from(f_friction);
+        self.f_at_end.clone_from(f_at_end);
         self.contact_forces.clone_from(contact_forces);
         self.impulses.clone_from(impulses);
         self.carried.clone_from(carried);

@@ -41,6 +41,7 @@ impl Kernel for Scheme {
         let (new, old) = (1.0 - self.alpha_f, self.alpha_f);
         // Contact forces are averaged under both rules: the constraint holds at the step's end.
         stage.mean = [0.0, old, new];
+        stage.works_at_both_ends = true;
         stage.internal = Internal::Gradient;
         (stage.weights, stage.before, stage.average) = match self.forces {
             ForceRule::AverageForces => (

@@ -85,6 +85,9 @@ pub struct Stage {
     /// update: weights of the mean over the previous step, of the force at the step's start, of the
     /// force at the stage's end. Over all stages they sum to one.
     pub mean: [f64; 3],
+    /// Whether forces work with the mean of their values at both ends of the step, which is of
+    /// second order, and not with that of `mean`, which may lag behind it.
+    pub works_at_both_ends: bool,
 }
 
 impl Stage {
@@ -93,6 +96,7 @@ impl Stage {
         (self.end, self.mean) = (end, mean);
         (self.weights, self.before, self.average) = (Weights::FULL, Weights::default(), 0.0);
         self.internal = Internal::Gradient;
+        self.works_at_both_ends = false;
     }
 
     /// Whether the balance has no inertia: velocities and accelerations are then zero, and time

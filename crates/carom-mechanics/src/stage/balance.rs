@@ -62,7 +62,8 @@ pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mu
         known[i] = if model.massless[i] {
             0.0
         } else {
-            mass * known[i] + internal * state.f_internal[i] + contact * state.f_contact[i]
+            let averaged = state.f_contact[i] - state.f_at_end.get(i).copied().unwrap_or(0.0);
+            mass * known[i] + internal * state.f_internal[i] + contact * averaged
                 - external * (model.gravity[i] + state.f_external[i])
         };
     }

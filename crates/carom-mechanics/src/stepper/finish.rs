@@ -64,6 +64,7 @@ impl Finish<'_> {
         if let Some(jump) = projected {
             report.projection = jump;
             carried::project(&mut next, self.carried);
+            next.ledger.relaxing = 0.0;
         }
         if !released.is_empty() {
             report.restitution = separate(model, &mut next, &released, &mut work.system)?;

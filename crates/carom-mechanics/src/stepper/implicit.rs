@@ -24,7 +24,7 @@ use crate::stage::evaluation::Iterate;
 use crate::stage::grip::solve_by_grip;
 use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
-use crate::velocity::persistency::averaged_contact_into;
+use crate::velocity::persistency::contact_forces_into;
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
@@ -166,8 +166,8 @@ impl Stepper for Implicit {
                 .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
-        averaged_contact_into(model, &mut next, &solved.rows);
-        ledger::account(&equations, &solved, &mut next, strain, dt, (&means, self.kernel.carried()));
+        contact_forces_into(model, &mut next, &solved.rows);
+        ledger::account(&equations, &solved, &mut next, strain, dt, &means);
         if self.kernel.stages() > 1 {
             ledger::keep_friction(model, &solved, &mut next);
         }

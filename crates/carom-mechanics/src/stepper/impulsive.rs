@@ -18,9 +18,9 @@
 //! constrained, not positions: an arriving node penetrates by up to Δt times its speed, which is
 //! recorded as it is.
 
-use carom_algebra::sums::max_abs;
+use carom_algebra::sums::{dot, max_abs};
 use carom_contact::{Pairing, Rows, Tangential};
-use carom_time::{Impulse, ImpulseShares, Kernel, Memory, Stage};
+use carom_time::{Impulse, ImpulseShares, Memory, Stage};
 
 use super::finish::Finish;
 use super::impulses::{Impulses, TIE};
@@ -31,7 +31,7 @@ use crate::check::skins::length;
 use crate::check::watched::has_gaps;
 use crate::contact::constraints::Constraints;
 use crate::contact::update::search;
-use crate::ledger::{book_kinetic, book_materials, change_of_loads, work_of_loads};
+use crate::ledger::{book_kinetic, book_materials, change_of_loads};
 use crate::model::{LoadsAt, Model};
 use crate::rejected::Rejected;
 use crate::settings::{Settings, Tangent};
@@ -41,6 +41,7 @@ use crate::stage::evaluation::{Evaluation, Iterate};
 use crate::state::State;
 use crate::timings::timed;
 use crate::trace::Iteration;
+use crate::works::{at_both_ends, work_ahead};
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
@@ -131,7 +132,7 @@ impl Stepper for Impulsive {
         impulses.release(&mut next.a, -shares.acceleration);
         next.f_internal.clone_from(&solved.forces.internal);
         next.f_external.clone_from(&solved.forces.loads);
-        next.ledger.external_work += work_of_loads(&equations, &solved);
+        let loads = next.f_external.clone();
         next.ledger.strain = solved.strain;
         next.materials.accept(&solved.materials);
         if equations.stage.average != 0.0 {
@@ -143,8 +144,15 @@ impl Stepper for Impulsive {
             model.loads_into(to, &next.y, &mut LoadsAt::default(), &mut next.f_external)?;
         }
         book_materials(&mut next);
-        let carried = self.scheme.alpha().map_or(0.0, |alpha| alpha.carried());
-        next.ledger.unbooked -= carried * change_of_loads(state, &next, &solved.at.increment);
+        let increment = &solved.at.increment;
+        if equations.stage.works_at_both_ends {
+            next.ledger.external_work += at_both_ends(increment, &state.f_external, &next.f_external);
+            let changes = [change_of_loads(state, &next, increment), 0.0];
+            let relaxing = &mut next.ledger.relaxing;
+            next.ledger.unbooked += work_ahead(&equations.stage, dt, changes, relaxing);
+        } else {
+            next.ledger.external_work += dot(increment, &loads);
+        }
         impulses.record(dt, &mut next, &mut pairings);
         // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;

@@ -118,7 +118,7 @@ impl Pressed {
     /// Accelerations of projected velocities, and the contact forces.
     fn accelerate(&self, model: &Model, state: &mut State, system: &mut System) -> Result<(), Rejected> {
         accelerate(model, state, &self.gaps, |place| asks(model, place), &self.slid, system)?;
-        averaged_contact_into(model, state, &self.gaps);
+        contact_forces_into(model, state, &self.gaps);
         book_contact_forces(model, state);
         Ok(())
     }
@@ -275,26 +275,35 @@ fn moved(model: &Model, state: &State) -> Option<Vec<f64>> {
     (!model.motions.is_empty()).then_some(moved)
 }
 
-/// Σ Gᵀλ over the contacts with averaged forces, for the next step.
-pub(crate) fn averaged_contact_into(model: &Model, state: &mut State, rows: &[Rows]) {
-    let State { f_contact, pairs, .. } = state;
+/// Σ Gᵀλ over the contacts, for the next step.
+pub(crate) fn contact_forces_into(model: &Model, state: &mut State, rows: &[Rows]) {
+    let acts_at_end = model.contacts.iter().any(|contact| contact.at_the_end);
+    let State { f_contact, f_at_end, pairs, .. } = state;
     f_contact.fill(0.0);
-    for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| !contact.at_the_end) {
+    f_at_end.clear();
+    f_at_end.resize(if acts_at_end { f_contact.len() } else { 0 }, 0.0);
+    for (k, contact) in model.contacts.iter().enumerate() {
         debug_assert_eq!(rows[k].len(), pairs[k].len(), "rows of contact {}", contact.name);
         for (pair, row) in pairs[k].iter().zip(rows[k].iter()).filter(|(pair, _)| pair.active) {
             row.add_to(pair.lambda, f_contact);
+            if contact.at_the_end {
+                row.add_to(pair.lambda, f_at_end);
+            }
         }
     }
     state.f_friction.clear();
     if model.has_friction() {
         let mut friction = vec![0.0; model.dofs()];
+        let mut at_end = std::mem::take(&mut state.f_at_end);
         each_slip(model, state, |k, _, traction, row| {
-            if !model.contacts[k].at_the_end {
-                row.add_to(traction, &mut friction);
+            row.add_to(traction, &mut friction);
+            if model.contacts[k].at_the_end {
+                row.add_to(traction, &mut at_end);
             }
         });
         state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
         state.f_friction = friction;
+        state.f_at_end = at_end;
     }
 }
 

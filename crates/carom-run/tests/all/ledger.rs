@@ -5,12 +5,10 @@
 //!
 //! ```text
 //! Δy·M Δv/Δt − ΔK + Δy·F̄_int − ΔU                             stages, with their mean internal force
-//! (Δy·F̄_int − ΔU) − (γ+α_m−1) Δy·MΔa + Δt² (β−γ/2) Δa·M(a_s + γΔa)      α family (Krenk 2006)
-//! (Δy·F̄_int − ΔU) + Δy·M((1−α_m) a_s+1 + α_m a_s) − Δt v̄·M((1−γ) a_s + γ a_s+1)     with jumps of v
+//! Δy·(P_s + P_s+1)/2 − ΔU − ΔK          α family, with the forces P that its balance needs, also in load steps
+//! (Δy·F̄_int − ΔU) + Δy·M((1−α_m) a_s+1 + α_m a_s) − (½−α_f) Δy·ΔF_ext − Δt v̄·M((1−γ) a_s + γ a_s+1)     with jumps of v
 //! Δy·F_int(y_½) − ΔU                                             Moreau and Jean's rule with θ = ½
 //! Δy·(F_int,s + F_int,s+1)/2 − ΔU − Δ((v − Δy/Δt)·M(v − Δy/Δt))/2             central differences
-//! Δy·F_int,s+1 − Δy·(F_ext,s+1 − F_ext,s)/2 − ΔU                 load steps, whose contact works at their end
-//! Δy·(F_int,s + F_int,s+1)/2 − Δy·(F_c,s+1 − F_c,s)/2             of their moved nodes instead
 //! ```
 //!
 //! with v before projections, v̄ the mean of those at both ends, and a without impulses.
@@ -57,24 +55,70 @@ fn sum(x: &[f64], factor: f64, y: &[f64]) -> Vec<f64> {
     x.iter().zip(y).map(|(x, y)| x + factor * y).collect()
 }
 
-/// What a step of the α family dissipates.
-fn of_alpha(model: &Model, scheme: &Scheme, before: &State, y: &[f64], dt: f64) -> f64 {
-    let moved = sum(y, -1.0, &before.y);
+/// What a step of the α family dissipates: what the forces that follow from its balance do with the
+/// mean of both ends, less the change of the energies. None with contacts of both kinds, of which
+/// the balance gives the sum alone.
+pub(super) fn of_alpha(model: &Model, scheme: &Scheme, before: &State, now: &State, dt: f64) -> Option<f64> {
+    let moved = sum(&now.y, -1.0, &before.y);
     let mut a = sum(&moved, -dt, &before.v);
     a = sum(&a, -(0.5 - scheme.beta) * dt * dt, &before.a);
     a.iter_mut().for_each(|a| *a /= scheme.beta * dt * dt);
-    let change = sum(&a, -1.0, &before.a);
-    let m_change = times_mass(model, &change);
-    let [start, end] = [&before.y[..], y].map(|y| Energies::of(model, y, &before.v));
-    let mean: Vec<f64> = (0..y.len())
-        .map(|i| (1.0 - scheme.alpha_f) * end.internal[i] + scheme.alpha_f * start.internal[i])
-        .collect();
-    dot(&moved, &mean)
-        - (end.strain - start.strain)
-        - (scheme.gamma + scheme.alpha_m - 1.0) * dot(&moved, &m_change)
-        + dt * dt
-            * (scheme.beta - 0.5 * scheme.gamma)
-            * dot(&m_change, &sum(&before.a, scheme.gamma, &change))
+    let mut v = sum(&sum(&before.v, dt * (1.0 - scheme.gamma), &before.a), dt * scheme.gamma, &a);
+    for dof in model.motions.dofs() {
+        a[dof] = now.a[dof];
+        v[dof] = now.v[dof];
+    }
+    let acts_at_end = model.contacts.iter().filter(|contact| contact.at_the_end).count();
+    if acts_at_end > 0 && acts_at_end < model.contacts.len() {
+        return None;
+    }
+    let [start, end] = [(&before.y, &before.v), (&now.y, &v)].map(|(y, v)| Energies::of(model, y, v));
+    let mixed = |x: f64, y: f64, old: f64| old * x + (1.0 - old) * y;
+    let mean_a: Vec<f64> =
+        before.a.iter().zip(&a).map(|(old, new)| mixed(*old, *new, scheme.alpha_m)).collect();
+    let inertia = times_mass(model, &mean_a);
+    let change = times_mass(model, &sum(&v, -1.0, &before.v));
+    let prescribed: Vec<usize> = model.motions.dofs().collect();
+    let work = |i: usize| {
+        let internal = 0.5 * (start.internal[i] + end.internal[i]);
+        if prescribed.contains(&i) {
+            return change[i] / dt + internal;
+        }
+        let load = |state: &State| model.gravity[i] + state.f_external[i];
+        let old = load(before) - before.f_contact[i];
+        let balanced = inertia[i] + mixed(start.internal[i], end.internal[i], scheme.alpha_f);
+        let new = if model.massless[i] {
+            end.internal[i]
+        } else if acts_at_end > 0 {
+            balanced - mixed(load(before), load(now), scheme.alpha_f) + load(now)
+        } else {
+            (balanced - scheme.alpha_f * old) / (1.0 - scheme.alpha_f)
+        };
+        0.5 * (old + new)
+    };
+    let worked: f64 = moved.iter().enumerate().map(|(i, moved)| moved * work(i)).sum();
+    // Friction works with its value at the end.
+    Some(
+        worked + friction_lag(model, before, now)
+            - (end.strain - start.strain)
+            - (end.kinetic - start.kinetic),
+    )
+}
+
+fn has_friction(model: &Model) -> bool {
+    model.contacts.iter().any(|contact| contact.friction.is_some())
+}
+
+/// What friction, in the forces that follow from the balance, does with the mean of both ends, less
+/// what it does with its value at the end, which is booked.
+fn friction_lag(model: &Model, before: &State, now: &State) -> f64 {
+    if !has_friction(model) {
+        return 0.0;
+    }
+    let moved = sum(&now.y, -1.0, &before.y);
+    let stored = now.ledger.stick_springs - before.ledger.stick_springs;
+    let booked = stored - (now.ledger.friction_work - before.ledger.friction_work);
+    0.5 * (dot(&moved, &before.f_friction) - booked)
 }
 
 /// What a step of one or two stages that end with a balance dissipates; none if a projection has
@@ -154,7 +198,9 @@ fn of_impulses(model: &Model, scheme: &dyn Impulse, before: &State, now: &State,
     };
     let inertia = times_mass(model, &mixed(alpha.alpha_m, &before.a, &now.a));
     let smooth = times_mass(model, &mixed(1.0 - alpha.gamma, &before.a, &now.a));
+    let loads = sum(&now.f_external, -1.0, &before.f_external);
     dot(&moved, &mixed(alpha.alpha_f, &start.internal, &end.internal)) - stored + dot(&moved, &inertia)
+        - (0.5 - alpha.alpha_f) * dot(&moved, &loads)
         - 0.5 * dt * dot(&sum(&before.v, 1.0, &now.v), &smooth)
 }
 
@@ -169,20 +215,18 @@ fn of_central(model: &Model, before: &State, now: &State, dt: f64) -> f64 {
         - (end.kinetic - start.kinetic)
 }
 
-/// What a load step dissipates: the mean of the loads that are in equilibrium at its ends works,
+/// What a load step dissipates: the means of forces that are in equilibrium at its ends work,
 /// whatever was in equilibrium at the start of the run.
 fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
     let [start, end] = [before, now].map(|state| Energies::of(model, &state.y, &state.v));
     let work = |i: usize| {
-        let (old, new) = (start.internal[i], end.internal[i]);
-        if model.fixed[i] {
-            0.5 * (old + new - (now.f_contact[i] - before.f_contact[i]))
-        } else {
-            new - 0.5 * (now.f_external[i] - before.f_external[i])
-        }
+        let held = model.gravity[i] + before.f_external[i] - before.f_contact[i];
+        let old = if model.fixed[i] { start.internal[i] } else { held };
+        0.5 * (old + end.internal[i])
     };
     let moved = now.y.iter().zip(&before.y).enumerate();
-    moved.map(|(i, (y, old))| (y - old) * work(i)).sum::<f64>() - (end.strain - start.strain)
+    let worked = moved.map(|(i, (y, old))| (y - old) * work(i)).sum::<f64>();
+    worked + friction_lag(model, before, now) - (end.strain - start.strain)
 }
 
 /// Newton's tolerance.
@@ -252,7 +296,9 @@ fn judge(case: &Case, steps: u64) -> Option<Judged> {
         let projected = projected || report.events.iter().any(|e| matches!(e, LogEvent::Projection { .. }));
         let predicted = match (&integrator, &alpha, &kernel) {
             _ if is_static => Some(of_statics(model, &before, now)),
-            (_, Some(alpha), _) => Some(of_alpha(model, alpha, &before, &now.y, dt)),
+            // The friction of a projection is booked with that of its step.
+            (_, Some(_), _) if has_friction(model) && projected => None,
+            (_, Some(alpha), _) => of_alpha(model, alpha, &before, now, dt),
             (Some(Integrator::Nonsmooth(Nonsmooth::Impulse(scheme), _)), ..) => {
                 Some(of_impulses(model, &**scheme, &before, now, dt))
             }

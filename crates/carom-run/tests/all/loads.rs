@@ -257,10 +257,8 @@ tolerance = 1e-13
     assert!((total[0] - 3.3).abs() < 1e-13 && (total[1] + 2.0 + 0.5).abs() < 1e-13, "{total:?}");
 }
 
-/// Under a varying load, a scheme that carries the momentum c Δt M a in accelerations books other
-/// work than its velocities do, by −c Σ Δy·ΔF, c = 1 − γ − α_m, although no energy is created.
-/// Newmark's ¼, ½ conserves K + U − Σ ½(F₀ + F₁)Δy of a linear body to round-off for any Δt. The
-/// guard stops none of them, not even in the first step.
+/// Newmark's ¼, ½ conserves K + U − Σ ½(F₀ + F₁)Δy of a linear body under a varying load to
+/// round-off for any Δt. The guard stops none of the others, not even in the first step.
 #[test]
 fn a_changing_load_creates_nothing() {
     for (load, step) in [("0.1*cos(5*t)", 0.02), ("0.1*sin(3*t)^4", 0.01)] {
@@ -271,9 +269,8 @@ fn a_changing_load_creates_nothing() {
                 .ledger
         };
         let ledger = end(r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#);
-        assert!((ledger.drift() - ledger.unbooked).abs() < 1e-12 * ledger.largest, "{ledger:?}");
-        // ½ Σ Δy·ΔF.
-        assert!(ledger.unbooked.abs() > 5e-4 * ledger.largest, "{ledger:?}");
+        assert!(ledger.drift().abs() < 1e-12 * ledger.largest, "{ledger:?}");
+        assert_eq!(ledger.unbooked, 0.0);
         for scheme in [
             r#"{ kind = "hu" }"#,
             r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#,
@@ -322,7 +319,10 @@ fn the_energy_of_a_scheme_gains_the_work_that_was_not_booked() {
             }
             let scale = sim.state().ledger.scale();
             assert!(missed < 1e-13 * scale, "{scheme} {load}: {missed:e} of {scale:e}");
-            assert!(least >= -1e-15 * scale && lent > 1e-4 * scale, "{scheme} {load}: {least:e} {lent:e}");
+            assert!(
+                least >= -1e-15 * scale && (lent > 1e-4 * scale || gamma == 0.5),
+                "{scheme} {load}: {least:e} {lent:e}"
+            );
         }
     }
 }
@@ -350,7 +350,7 @@ fn a_smooth_press_is_not_shortened() {
 
 /// Gravity that varies is a load without a potential. In each step the force in the balance does
 /// the work g M·Δy, from the masses of the model alone, and with it a bar that vibrates by the
-/// midpoint rule loses no energy.
+/// midpoint or the trapezoidal rule loses no energy.
 #[test]
 fn the_work_of_gravity_that_varies_closes_the_energy_balance() {
     let g = |t: f64| -0.3 * (3.0 * t).sin();
@@ -359,7 +359,7 @@ fn the_work_of_gravity_that_varies_closes_the_energy_balance() {
     let schemes: [(&str, &dyn Fn(f64, f64) -> f64); 4] = [
         (r#"{ kind = "chung-hulbert", rho_inf = 1.0 }"#, &mean),
         (r#"{ kind = "energy-momentum" }"#, &|from, to| g(0.5 * (from + to))),
-        (trapezoidal, &|_, to| g(to)),
+        (trapezoidal, &mean),
         (r#"{ kind = "static" }"#, &mean),
     ];
     for (scheme, force) in schemes {
@@ -380,7 +380,7 @@ fn the_work_of_gravity_that_varies_closes_the_energy_balance() {
             let ledger = &state.ledger;
             assert!((ledger.external_work - work).abs() < 1e-14, "{scheme}: {work}");
             let lost = ledger.dissipation();
-            assert!(lost.abs() < 1e-14 || scheme == trapezoidal, "{scheme}: {lost:e}");
+            assert!(lost.abs() < 1e-14, "{scheme}: {lost:e}");
         }
     }
 }

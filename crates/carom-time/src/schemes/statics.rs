@@ -30,6 +30,7 @@ impl Kernel for Static {
         let dofs = memory.states[0].0.len();
         stage.at_the_end(1.0, [0.0, 0.0, 1.0]);
         stage.weights.mass = 0.0;
+        stage.works_at_both_ends = true;
         for map in [&mut stage.velocity, &mut stage.acceleration] {
             map.slope = 0.0;
             map.at_start.clear();

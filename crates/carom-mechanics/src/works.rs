@@ -1,0 +1,137 @@
+//! Works of a step, with Δy = y_{s+1} − y_s:
+//!
+//! ```text
+//! of both ends     F̄ = (F_s + F_{s+1})/2          α family, impulse schemes, load steps
+//! of means         F̄ = the mean of the velocity update, `Stage::mean`          all others
+//! external = Δy·F̄_ext (beyond the potential) + Δy_moved·R̄          contact = Δy·F̄_cont          friction = its part of friction
+//! ```
+//!
+//! The balance of the α family has its forces at 1 − α_f of the step. As a quadrature of a work
+//! ∫F·dy over time that lags by ½ − α_f steps: to first order, and for as long as a load varies. The
+//! mean of both ends is of second order. With it the trapezoidal rule dissipates nothing in linear
+//! motion, an obstacle that turns under a body does no work, and works do not depend on the frame.
+//!
+//! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
+//! forces: accelerations of the α family are of first order. Of means it is the mean residual of the
+//! balance, and the impulse M J of J = v_{s+1} − v_s − Δt ā, the change of velocities beyond the mean
+//! acceleration, where a prescribed velocity jumps.
+
+use carom_algebra::sums::dot;
+use carom_time::Stage;
+
+use crate::ledger::friction_of;
+use crate::model::Model;
+use crate::stage::equations::Equations;
+use crate::stage::evaluation::Evaluation;
+use crate::state::{Means, State};
+
+/// Works of the forces of a step.
+pub(crate) struct Works {
+    /// Of loads beyond their potential, and of moving supports.
+    pub external: f64,
+    /// Δy·F̄ of the contact forces as the balance has them.
+    pub contact: f64,
+    /// The part of friction in it.
+    pub friction: f64,
+}
+
+impl Works {
+    /// With the mean of both ends; `next` has its forces, and velocities before a projection.
+    pub(crate) fn at_both_ends(equations: &Equations, last: &Evaluation, next: &State, dt: f64) -> Self {
+        let Equations { model, state, stage, .. } = equations;
+        let increment = &last.at.increment;
+        let mut friction = 0.0;
+        let mut contact = at_both_ends(increment, &state.f_contact, &next.f_contact);
+        if model.has_friction() {
+            friction = work_of_friction(model, last, next);
+            contact += friction - at_both_ends(increment, &friction_of(model, state), &next.f_friction);
+        }
+        let mut external = at_both_ends(increment, &state.f_external, &next.f_external);
+        if !equations.motions.is_empty() {
+            let mut reaction = vec![0.0; model.dofs()];
+            if !stage.is_static() {
+                let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
+                model.mass.multiply_into(&change, &mut reaction);
+            }
+            for (i, force) in reaction.iter_mut().enumerate() {
+                let internal = state.f_internal[i] + next.f_internal[i];
+                let contact = state.f_contact[i] + next.f_contact[i];
+                let loads = state.f_external[i] + next.f_external[i];
+                *force += 0.5 * (internal + contact - loads) - model.gravity[i];
+            }
+            model.points.gather(&mut reaction);
+            external += model.motions.dofs().map(|i| increment[i] * reaction[i]).sum::<f64>();
+        }
+        Self { external, contact, friction }
+    }
+
+    /// With means over the step.
+    pub(crate) fn of_means(
+        equations: &Equations,
+        next: &State,
+        increment: &[f64],
+        dt: f64,
+        means: &Means,
+    ) -> Self {
+        let model = equations.model;
+        let friction = if model.has_friction() { dot(increment, &means.friction) } else { 0.0 };
+        let mut external = if model.loads.is_empty() { 0.0 } else { dot(increment, &means.loads) };
+        if !equations.motions.is_empty() {
+            let mut jump = vec![0.0; increment.len()];
+            for i in model.motions.dofs() {
+                jump[i] = next.v[i] - equations.state.v[i] - dt * means.accelerations[i];
+            }
+            model.points.carry(&mut jump);
+            let mut impulse = vec![0.0; increment.len()];
+            model.mass.multiply_into(&jump, &mut impulse);
+            external += dot(increment, &means.supports) + dot(increment, &impulse) / dt;
+        }
+        Self { external, contact: dot(increment, &means.contact), friction }
+    }
+}
+
+/// Work Δy·(F_s + F_{s+1})/2.
+pub(crate) fn at_both_ends(increment: &[f64], before: &[f64], now: &[f64]) -> f64 {
+    let forces = before.iter().zip(now);
+    increment.iter().zip(forces).map(|(moved, (before, now))| 0.5 * moved * (before + now)).sum()
+}
+
+/// Work Σ q·S of the tractions at the end of a step over its slips S.
+fn work_of_friction(model: &Model, last: &Evaluation, next: &State) -> f64 {
+    let mut work = 0.0;
+    for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].friction.is_some()) {
+        for (p, pair) in next.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
+            for (slip, traction) in last.slip_rows((k, p)).zip(pair.tangential.traction) {
+                work += traction * slip.along(&last.at.increment);
+            }
+        }
+    }
+    work
+}
+
+/// Work that forces which change by ΔF over a step do on the momentum of velocities beyond the mean
+/// of both ends: `changes` has Δy·ΔF of those that the balance averages, and of those that act at
+/// its end, α_f = 0. The momentum of velocities is p = Σ Δt F̄ − c Δt q (`carried.rs`), so that
+///
+/// ```text
+/// p − Σ Δt (F_s + F_{s+1})/2 = Δt [(½ − α_f − c) F + c x],     x = F − q
+/// (1 − α_m) x_{s+1} = (α_f − α_m) ΔF − α_m x_s
+/// ```
+///
+/// The first part vanishes in schemes of second order, the second one where forces are steady.
+/// `relaxing`: Δy·x, which becomes that of the step's end.
+pub(crate) fn work_ahead(stage: &Stage, dt: f64, changes: [f64; 2], relaxing: &mut f64) -> f64 {
+    let gamma = stage.velocity.slope / (stage.acceleration.slope * dt);
+    let alpha_m = stage.before.mass;
+    let carried = 1.0 - gamma - alpha_m;
+    let mut work = 0.0;
+    let mut next = -alpha_m * *relaxing;
+    for (change, alpha_f) in changes.into_iter().zip([stage.before.contact, 0.0]) {
+        work += (0.5 - alpha_f - carried) * change;
+        next += (alpha_f - alpha_m) * change;
+    }
+    next /= stage.weights.mass;
+    work += carried * (next - *relaxing);
+    *relaxing = next;
+    work
+}
