@@ -1,7 +1,7 @@
 //! Facts of a case that its record states for metrics and studies.
 
 use carom_record::metrics::Overlay;
-use carom_record::{ContactFacts, Facts, Held, Stepping, body_of};
+use carom_record::{ContactFacts, Facts, Held, Stepping, Turns, body_of};
 
 use super::spec::{
     Case, ContactSpec, Enforcement, FormulaSpec, Method, ObstacleMotion, OverlaySpec, Persistency,
@@ -61,10 +61,20 @@ fn contact(spec: &ContactSpec) -> ContactFacts {
         secondary: spec.secondary.clone(),
         primary: spec.primary.side().map(str::to_owned),
         moves: !ObstacleMotion::is_fixed(&spec.motion),
+        turns: turns(&spec.motion),
         is_penalty: spec.enforcement == Enforcement::Penalty,
         is_mortar: spec.method == Method::Mortar,
         projects: spec.persistency == Persistency::Project,
     }
+}
+
+fn turns(motion: &ObstacleMotion) -> Option<Turns> {
+    let ObstacleMotion::Prescribed { rotate: Some((angle, _)), axis, .. } = motion else { return None };
+    let axis = match axis.as_deref() {
+        Some([x, y, z]) => [*x, *y, *z],
+        _ => [0.0, 0.0, 1.0],
+    };
+    Some(Turns { angle: angle.to_string(), axis })
 }
 
 /// Constrained axes of all bodies of a support, each with its displacement if that is a formula;

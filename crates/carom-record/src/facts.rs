@@ -52,6 +52,9 @@ pub struct ContactFacts {
     pub primary: Option<String>,
     /// Whether the obstacle moves.
     pub moves: bool,
+    /// Rotation of the obstacle; none if it does not turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turns: Option<Turns>,
     /// Whether contact is enforced by a penalty.
     pub is_penalty: bool,
     /// Whether velocities are projected where contact begins.
@@ -59,6 +62,15 @@ pub struct ContactFacts {
     /// Whether the contact is a mortar, which has a pressure field.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_mortar: bool,
+}
+
+/// Rotation of a rigid obstacle about the point whose position and velocity are in the history.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Turns {
+    /// Angle in degrees as a formula in t.
+    pub angle: String,
+    /// Direction of the axis.
+    pub axis: [f64; 3],
 }
 
 /// An axis along which a support holds a body.

@@ -53,7 +53,7 @@ pub use error::RecordError;
 pub use expect::{Bound, Deviation, Expect, Norm, OrderOf};
 pub use expectation::judge;
 pub use expression::{Expression, Sign};
-pub use facts::{ContactFacts, Facts, Held, Overlay, Stepping, body_of};
+pub use facts::{ContactFacts, Facts, Held, Overlay, Stepping, Turns, body_of};
 pub use files::{flushes, is_free};
 pub use intact::{checkpoints, last_checkpoint};
 pub use manifest::{Column, Expectation, Machine, Manifest, PHASES, Source, Status, now};

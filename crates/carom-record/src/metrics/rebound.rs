@@ -8,9 +8,10 @@
 //! ```
 //!
 //! (I. Newton, *Principia*, 1687, scholium to the laws of motion.) n is the direction of the normal
-//! contact impulse on the striker, without that of friction. A fixed obstacle has no velocity, and
-//! a body has that of its centre of mass, but along an axis in which a support holds or moves it,
-//! that of the support: what its centre does there is vibration.
+//! contact impulse on the striker, without that of friction. A fixed obstacle has no velocity; one
+//! that moves has that of its point at the mean place Σ λ x/Σ λ of those rows; and a body has that of
+//! its centre of mass, but along an axis in which a support holds or moves it, that of the support:
+//! what its centre does there is vibration.
 
 use carom_formula::Formula;
 
@@ -37,6 +38,8 @@ pub struct Impact<'a> {
     pub others: Vec<Party<'a>>,
     /// Direction of the normal contact impulse on the striker, of length 1.
     pub normal: [f64; 3],
+    /// Mean place of the contact, weighted with its impulse.
+    pub place: [f64; 3],
     /// −w⁻·n, > 0: with this velocity the striker approaches.
     pub approach: f64,
     /// w⁺·n; none if the episode has not ended.
@@ -54,29 +57,77 @@ impl<'a> Impact<'a> {
         let episode = first_episode(&run.history).ok_or("no contact closed")?;
         let striker = striker(&run.history).ok_or("no body moves")?;
         let before = episode.start.checked_sub(1).ok_or("contact is closed at the start")?;
-        let (others, normal) =
-            struck(striker, run, episode).ok_or("the fastest body strikes nothing but itself")?;
+        let mut impact =
+            Self::of(striker, run, episode).ok_or("the fastest body strikes nothing but itself")?;
         let is_tied = |body: &str| run.manifest.facts.tied.iter().any(|tied| tied == body);
-        if is_tied(striker) || others.iter().flatten().any(|other| is_tied(other)) {
+        if is_tied(striker) || impact.others.iter().flatten().any(|other| is_tied(other)) {
             return Err("a tied body moves with another one");
         }
-        let mut impact = Self { striker, others, normal, approach: 0.0, separation: None };
         impact.approach = -impact
             .relative(run, before)
             .ok_or("several bodies of different velocities are struck, or that of a support is not known")?;
         impact.separation = episode.end.and_then(|end| impact.relative(run, end));
         let parties = impact.others.iter().copied().chain([Some(striker)]);
-        let fastest = parties.filter_map(|party| velocity(run, party, before)).flatten();
+        let fastest = parties.filter_map(|party| impact.velocity(run, party, before)).flatten();
         let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
         let is_approach = impact.approach > AT_REST * fastest;
         if is_approach { Ok(impact) } else { Err("the bodies did not approach each other before contact") }
     }
 
+    /// The parties that a striker strikes in an episode, with direction and place of the normal
+    /// impulse on it; none if it strikes nothing but itself.
+    fn of(striker: &'a str, run: &'a Run, episode: Episode) -> Option<Self> {
+        let times = run.times();
+        let is_in =
+            |time: f64| times[episode.start] <= time && episode.end.is_none_or(|end| time < times[end]);
+        let mut others = Vec::new();
+        let mut impulse = [0.0; 3];
+        let mut moment = [0.0; 3];
+        let mut weight = 0.0;
+        for row in run.contact.iter().filter(|row| is_in(row.time)) {
+            let Some([secondary, primary]) = parties(run, &row.contact) else { continue };
+            let (other, sign) = match [secondary, primary].map(|party| party == Some(striker)) {
+                [true, false] => (primary, -1.0),
+                [false, true] => (secondary, 1.0),
+                _ => continue,
+            };
+            if !others.contains(&other) {
+                others.push(other);
+            }
+            weight += row.multiplier;
+            for i in 0..3 {
+                impulse[i] += sign * row.multiplier * row.normal[i];
+                moment[i] += row.multiplier * row.point[i];
+            }
+        }
+        let length = impulse.iter().fold(0.0, |length, x| f64::hypot(length, *x));
+        (length > 0.0 && weight != 0.0).then(|| Self {
+            striker,
+            others,
+            normal: impulse.map(|x| x / length),
+            place: moment.map(|x| x / weight),
+            approach: 0.0,
+            separation: None,
+        })
+    }
+
+    /// Velocity of a party in a row, of an obstacle at the place of contact; none if it is that of
+    /// supports which is not known.
+    fn velocity(&self, run: &Run, party: Party, row: usize) -> Option<Vec<f64>> {
+        let axes = vector(&run.history, "contact_force").len();
+        let Some(name) = party else { return Some(vec![0.0; axes]) };
+        let of_center = velocities(&run.history, name).into_iter().map(|v| v[row]);
+        let turning = turning(run, name, self.place, row)?;
+        let prescribed = prescribed(run, name, run.times()[row])?;
+        let held = of_center.zip(prescribed).map(|(v, held)| held.unwrap_or(v));
+        Some(held.zip(turning).map(|(v, turning)| v + turning).collect())
+    }
+
     /// w·n in a row; none if parties of different velocities are struck.
     fn relative(&self, run: &Run, row: usize) -> Option<f64> {
-        let of_striker = velocity(run, Some(self.striker), row)?;
-        let others: Option<Vec<_>> = self.others.iter().map(|other| velocity(run, *other, row)).collect();
-        let others = others?;
+        let of_striker = self.velocity(run, Some(self.striker), row)?;
+        let others = self.others.iter().map(|other| self.velocity(run, *other, row));
+        let others = others.collect::<Option<Vec<_>>>()?;
         let first = others.first()?;
         let relative = of_striker.iter().zip(first).map(|(v, other)| v - other);
         let alike = others.iter().all(|other| other == first);
@@ -118,31 +169,6 @@ pub fn no_rebound(run: &Run) -> Option<&'static str> {
     }
 }
 
-/// Parties struck by a striker in an episode, and the direction of the normal impulse on it;
-/// none if it strikes nothing but itself.
-fn struck<'a>(striker: &str, run: &'a Run, episode: Episode) -> Option<(Vec<Party<'a>>, [f64; 3])> {
-    let times = run.times();
-    let is_in = |time: f64| times[episode.start] <= time && episode.end.is_none_or(|end| time < times[end]);
-    let mut others = Vec::new();
-    let mut impulse = [0.0; 3];
-    for row in run.contact.iter().filter(|row| is_in(row.time)) {
-        let Some([secondary, primary]) = parties(run, &row.contact) else { continue };
-        let (other, sign) = match [secondary, primary].map(|party| party == Some(striker)) {
-            [true, false] => (primary, -1.0),
-            [false, true] => (secondary, 1.0),
-            _ => continue,
-        };
-        if !others.contains(&other) {
-            others.push(other);
-        }
-        for (sum, n) in impulse.iter_mut().zip(row.normal) {
-            *sum += sign * row.multiplier * n;
-        }
-    }
-    let length = impulse.iter().fold(0.0, |length, x| f64::hypot(length, *x));
-    (length > 0.0).then(|| (others, impulse.map(|x| x / length)))
-}
-
 /// The parties of a contact, that of the secondary side first.
 fn parties<'a>(run: &'a Run, contact: &str) -> Option<[Party<'a>; 2]> {
     let spec = run.manifest.facts.contacts.iter().find(|spec| spec.name == contact)?;
@@ -155,13 +181,20 @@ fn velocities<'a>(history: &'a History, party: &str) -> Vec<&'a [f64]> {
     vector(history, &format!("{party}.velocity"))
 }
 
-/// Velocity of a party in a row; none if it is that of supports which is not known.
-fn velocity(run: &Run, party: Party, row: usize) -> Option<Vec<f64>> {
-    let axes = vector(&run.history, "contact_force").len();
-    let Some(name) = party else { return Some(vec![0.0; axes]) };
-    let of_center = velocities(&run.history, name).into_iter().map(|v| v[row]);
-    let prescribed = prescribed(run, name, run.times()[row])?;
-    Some(of_center.zip(prescribed).map(|(v, held)| held.unwrap_or(v)).collect())
+/// Velocity, beyond that of its centre, of a point of an obstacle that turns: ω × (x − centre). None
+/// if the rate of its rotation is unknown.
+fn turning(run: &Run, contact: &str, place: [f64; 3], row: usize) -> Option<[f64; 3]> {
+    let spec = run.manifest.facts.contacts.iter().find(|spec| spec.name == contact);
+    let Some(turns) = spec.and_then(|spec| spec.turns.as_ref()) else { return Some([0.0; 3]) };
+    let rate = rate(&turns.angle, run.times()[row])?.to_radians();
+    let center = vector(&run.history, &format!("{contact}.center"));
+    let arm: [f64; 3] = std::array::from_fn(|i| center.get(i).map_or(0.0, |center| place[i] - center[row]));
+    let length = turns.axis.iter().fold(0.0, |length, x| f64::hypot(length, *x));
+    Some(std::array::from_fn(|i| {
+        let j = (i + 1) % 3;
+        let k = (i + 2) % 3;
+        rate * (turns.axis[j] * arm[k] - turns.axis[k] * arm[j]) / length
+    }))
 }
 
 /// Velocity that the supports of a body prescribe, by axis; none along a free axis. None for the
