@@ -1,24 +1,25 @@
 //! Models without a solution: massless bodies under rules that need mass, and unconstrained bodies.
 
 use carom_case::{Case, ContactLaw, ForceTime, Problem};
-use carom_mechanics::model::{BodyInstance, Contact, Mode};
+use carom_mechanics::model::{BodyInstance, Contact, Mode, RigidMotion};
 
 /// Bodies with rigid modes that neither supports nor contacts can constrain: without inertia they
 /// have no equilibrium.
 pub(super) fn unconstrained(parts: &[BodyInstance], free: &[Mode], contacts: &[Contact]) -> Vec<Problem> {
     let mut problems: Vec<Problem> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
-        let own = free.iter().find_map(|mode| {
-            let motion = mode.motions.iter().find(|motion| motion.part == place)?;
-            Some((mode, motion))
-        });
-        let Some((mode, motion)) = own else { continue };
+        let is_of_part = |mode: &&Mode| mode.motions.iter().any(|motion| motion.part == place);
+        let Some(mode) = free.iter().find(is_of_part) else { continue };
+        // Bodies that ties connect have motions together: a contact of one constrains all.
         let involves = |c: &Contact| {
-            let secondary =
-                |place: usize| c.kinematics.secondary().iter().any(|n| parts[place].nodes().contains(n));
-            // A body cannot constrain itself, but a piece of it another one.
-            let can_constrain = !c.itself || motion.is_of_piece(parts);
-            can_constrain && (c.primary_part == Some(place) || secondary(place))
+            let holds = |motion: &RigidMotion| {
+                let nodes = parts[motion.part].nodes();
+                // A body cannot constrain itself, but a piece of it another one.
+                let can_constrain = !c.itself || motion.is_of_piece(parts);
+                let is_secondary = || c.kinematics.secondary().iter().any(|n| nodes.contains(n));
+                can_constrain && (c.primary_part == Some(motion.part) || is_secondary())
+            };
+            mode.motions.iter().any(holds)
         };
         if !contacts.iter().any(involves) {
             problems.push(Problem::new(

@@ -429,3 +429,43 @@ fn a_concave_corner_is_that_of_planes() {
         assert!(most < 1e-12 && together.state().impulse()[1] > 0.01, "{dimension}: {most:e}");
     }
 }
+
+/// A circle that spins about its centre does no work on what slides on it without friction: neither
+/// while a disc stays on it, nor, but for the steps in which it comes and goes, in a bounce.
+#[test]
+fn a_circle_that_spins_without_friction_does_no_work() {
+    let text = |motion: &str, scheme: &str| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 50.0, poisson = 0.3 }}]
+[[body]]
+name = "disc"
+material = "m"
+element = "T6"
+mesh = {{ shape = "disc", radius = 0.3, center = [0.0, 0.81], size = 0.15 }}
+velocity = [0.0, -0.5]
+[[contact]]
+name = "circle"
+secondary = "disc.arc"
+primary = {{ circle = {{ center = [0.0, 0.0], radius = 0.5 }}{motion} }}
+[time]
+end = 0.4
+{scheme}
+[output]
+fields_every = 0
+"#
+        )
+    };
+    let spins = r#", motion = { rotate = "500*t", about = [0.0, 0.0] }"#;
+    for kind in
+        [r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.6 }"#]
+    {
+        let scheme = format!("step = 0.002\nscheme = {kind}");
+        let [spun, rest] = [spins, ""]
+            .map(|motion| finish(simulation(&text(motion, &scheme), &[""; 0])).into_state().ledger);
+        let works = [spun.external_work, spun.contact_work - rest.contact_work];
+        let most = works.into_iter().fold(0.0, |most: f64, work| most.max(work.abs()));
+        assert!(most < 2e-3 * rest.total(), "{kind}: {works:?}");
+    }
+}

@@ -146,3 +146,60 @@ output = { fields_every = 0 }
     let found = restitution(&run).unwrap();
     assert!((found - across).abs() < 1e-4, "{found} {across}");
 }
+
+/// A disc thrown on a plane that comes towards it.
+const PLANE: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 50.0, poisson = 0.3 }]
+[[body]]
+name = "disc"
+material = "m"
+element = "T6"
+mesh = { shape = "disc", radius = 0.3, center = [0.1, 0.35], size = 0.15 }
+velocity = [0.0, -0.5]
+[[contact]]
+name = "floor"
+secondary = "disc.arc"
+primary = { plane = { point = [0, 0], normal = [0, 1] }, motion = { y = "0.5*t" } }
+[time]
+end = 0.6
+step = 0.002
+scheme = { kind = "energy-momentum" }
+[output]
+fields_every = 0
+"#;
+
+/// A translation is the same as a rotation about a remote point. In space, where the axis has a
+/// length of its own, likewise.
+#[test]
+fn an_obstacle_that_turns_has_its_velocity_at_the_contact() {
+    let turned = r#"contact.floor.primary={ plane = { point = [0, 0], normal = [0, 1] }, motion = { rotate = "0.5*t/1e4*180/pi", about = [-1e4, 0.0] } }"#;
+    let expected = record(PLANE, &[]);
+    let found = record(PLANE, &[turned]);
+    for name in ["restitution", "turning_time"] {
+        let [expected, found] = [&expected, &found].map(|run| value(run, name).unwrap());
+        assert!((found / expected - 1.0).abs() < 1e-3, "{name}: {found} {expected}");
+    }
+    let in_space = [
+        "dimension=3".to_owned(),
+        r#"body.disc.element="Tet4""#.to_owned(),
+        r#"body.disc.mesh={ shape = "ball", radius = 0.3, center = [0, 0, 0.35], size = 0.2 }"#.to_owned(),
+        "body.disc.velocity=[0, 0, -0.5]".to_owned(),
+        r#"contact.floor.secondary="disc.skin""#.to_owned(),
+    ];
+    let floor = |motion: &str| {
+        format!(
+            "contact.floor.primary={{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, motion = {{ {motion} }} }}"
+        )
+    };
+    let [moved, swung] =
+        [r#"z = "0.5*t""#, r#"rotate = "-0.5*t/1e4*180/pi", about = [-1e4, 0, 0], axis = [0, 3, 0]"#].map(
+            |motion| {
+                let mut sets = in_space.to_vec();
+                sets.push(floor(motion));
+                let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+                of(PLANE, &sets)
+            },
+        );
+    assert!((swung / moved - 1.0).abs() < 1e-3, "{swung} {moved}");
+}

@@ -174,3 +174,54 @@ scheme = { kind = "static" }
         assert!((y[0] - low * x[0]).abs() < 1e-9 && (y[1] - 0.8 * x[1]).abs() < 1e-9, "{x:?} {y:?}");
     }
 }
+
+/// Two blocks, tied on top of each other, that rest on a plane under a pressure: a contact of one
+/// of them holds both, whichever the tie moves.
+#[test]
+fn a_body_that_is_tied_to_one_in_contact_is_held() {
+    let text = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 300.0, poisson = 0.3 }]
+[[body]]
+name = "low"
+material = "m"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.5], cells = [4, 2] }
+[[body]]
+name = "high"
+material = "m"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.5], max = [1.0, 1.0], cells = [4, 2] }
+[[support]]
+on = ["low.left", "high.left"]
+fix = ["x"]
+[[load]]
+on = ["high.top"]
+pressure = "2*t"
+[[contact]]
+name = "floor"
+secondary = "low.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[[tie]]
+name = "glue"
+secondary = "high.bottom"
+primary = "low.top"
+[time]
+end = 1.0
+step = 0.25
+scheme = { kind = "static" }
+"#;
+    for sets in [&[""; 0][..], &[r#"tie.glue.secondary="low.top""#, r#"tie.glue.primary="high.bottom""#]] {
+        let sim = finish(simulation(text, sets));
+        // The pressure follows the deformed top, which is wider.
+        let model = sim.model();
+        let top = &model.parts[1].body.mesh();
+        let corner = |x: f64| {
+            let node = top.nodes.iter().position(|at| at == [x, 1.0]).unwrap() + model.parts[1].first_node;
+            sim.state().y[2 * node]
+        };
+        let weight = 2.0 * (corner(1.0) - corner(0.0));
+        let force = sim.state().contact_forces[0][1];
+        assert!((force / weight - 1.0).abs() < 1e-8, "{force} {weight}");
+    }
+}
