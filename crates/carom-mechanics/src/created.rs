@@ -2,9 +2,10 @@
 //! minimum, so that what was lost before does not hide it. It is judged against the largest energy
 //! that was there or was supplied, max (kinetic + strain, Σ |ΔW_ext|).
 //!
-//! In the α family, velocities take another share of a force that changes than the mean of both ends
-//! of the step with which it works (`works.rs`). A rise by what it does on them is no creation: a
-//! wall of constant velocity that strikes lends it until the accelerations are those of its force.
+//! In the α family, velocities take another share of a force that changes than the mean of both
+//! ends of the step with which it works (`works.rs`). A rise by what it does on them is no
+//! creation: a wall of constant velocity that strikes lends it until the accelerations are those of
+//! its force.
 
 use crate::state::{Created, Ledger};
 

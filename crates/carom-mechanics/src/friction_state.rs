@@ -2,6 +2,8 @@
 //! tractions q along H(y_s), and what pairs with friction did. About the normal, tangents of
 //! springs turn with the facet at the end of the step, by its least-squares rotation in it.
 
+use std::borrow::Cow;
+
 use carom_contact::{FrictionState, Pair, Row, Rows, Tangential, length};
 
 use crate::model::{Contact, Model};
@@ -26,6 +28,11 @@ pub fn each_slip(model: &Model, state: &State, mut visit: impl FnMut(usize, usiz
             }
         }
     }
+}
+
+/// Forces of friction at a state; a state of a case without friction has none.
+pub(crate) fn friction_forces(state: &State) -> Cow<'_, [f64]> {
+    if state.f_friction.is_empty() { vec![0.0; state.y.len()].into() } else { (&state.f_friction[..]).into() }
 }
 
 /// Adds the slips of a solved step to those of the closed pairs; open pairs have none.

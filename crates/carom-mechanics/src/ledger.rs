@@ -1,13 +1,11 @@
-//! The energy ledger of a step. Its works are found in `works.rs`, from the means over the step that
-//! are formed here or from the forces at both ends of the step.
-
-use std::borrow::Cow;
+//! The energy ledger of a step. Its works are found in `works.rs`, from the means over the step
+//! that are formed here or from the forces at both ends of the step.
 
 use carom_contact::{Pair, Row, Rows};
 use carom_time::Stage;
 
 use crate::contact::friction::secondary_friction;
-use crate::friction_state::each_slip;
+use crate::friction_state::{each_slip, friction_forces};
 use crate::model::Model;
 use crate::stage::balance::mean_acceleration;
 use crate::stage::equations::Equations;
@@ -42,7 +40,7 @@ pub(crate) fn add_stage(
     contact.add(model, stage, &solved.forces.contact, &state.f_contact, &mut means.contact);
     if model.has_friction() {
         means.friction.resize(model.dofs(), 0.0);
-        contact.add(model, stage, &solved.forces.friction, &friction_of(model, state), &mut means.friction);
+        contact.add(model, stage, &solved.forces.friction, &friction_forces(state), &mut means.friction);
     }
     if !model.loads.is_empty() {
         let loads = Shares { now, start, massless: 1.0 };
@@ -54,11 +52,6 @@ pub(crate) fn add_stage(
     if !equations.motions.is_empty() {
         add_supports(equations, solved, before, means);
     }
-}
-
-/// Forces of friction at a state; a state of a case without friction has none.
-pub(crate) fn friction_of<'a>(model: &Model, state: &'a State) -> Cow<'a, [f64]> {
-    if state.f_friction.is_empty() { vec![0.0; model.dofs()].into() } else { (&state.f_friction[..]).into() }
 }
 
 /// Weights of a force at the stage's end and at the step's start; at massless dofs, which have

@@ -29,8 +29,8 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads without potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// What that work lacks of the work on the momentum of velocities (`works.rs`). Contact of explicit schemes adds the work of its forces over
-    /// the tolerance of gaps.
+    /// What that work lacks of the work on the momentum of velocities (`works.rs`). Contact of
+    /// explicit schemes adds the work of its forces over the tolerance of gaps.
     pub unbooked: f64,
     /// Δy·x of forces from which accelerations still differ (`works.rs`).
     pub relaxing: f64,

@@ -1,25 +1,26 @@
 //! Works of a step, with Δy = y_{s+1} − y_s:
 //!
 //! ```text
-//! of both ends     F̄ = (F_s + F_{s+1})/2          α family, impulse schemes, load steps
-//! of means         F̄ = the mean of the velocity update, `Stage::mean`          all others
-//! external = Δy·F̄_ext (beyond the potential) + Δy_moved·R̄          contact = Δy·F̄_cont          friction = its part of friction
+//! of both ends     F̄ = (F_s + F_{s+1})/2                              α family, load steps
+//! of means         F̄ = the mean of the velocity update, `Stage::mean`     all others
+//! external         Δy·F̄_ext (beyond the potential) + Δy_moved·R̄
+//! contact          Δy·F̄_cont, of friction Σ q_{s+1} S with the slips S of the step
 //! ```
 //!
-//! The balance of the α family has its forces at 1 − α_f of the step. As a quadrature of a work
-//! ∫F·dy over time that lags by ½ − α_f steps: to first order, and for as long as a load varies. The
-//! mean of both ends is of second order. With it the trapezoidal rule dissipates nothing in linear
-//! motion, an obstacle that turns under a body does no work, and works do not depend on the frame.
+//! The balance of the α family has its forces at 1 − α_f of the step. As a quadrature of ∫F·dy this
+//! lags by ½ − α_f steps, an error of first order for as long as a load varies. The mean of both
+//! ends is of second order. With it the trapezoidal rule dissipates nothing in linear motion, an
+//! obstacle that turns under a body does no work, and works do not depend on the frame.
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
-//! forces: accelerations of the α family are of first order. Of means it is the mean residual of the
-//! balance, and the impulse M J of J = v_{s+1} − v_s − Δt ā, the change of velocities beyond the mean
-//! acceleration, where a prescribed velocity jumps.
+//! forces: accelerations of the α family are of first order. Of means it is the mean residual of
+//! the balance, and the impulse M J of J = v_{s+1} − v_s − Δt ā, the change of velocities beyond
+//! the mean acceleration, where a prescribed velocity jumps.
 
 use carom_algebra::sums::dot;
 use carom_time::Stage;
 
-use crate::ledger::friction_of;
+use crate::friction_state::friction_forces;
 use crate::model::Model;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
@@ -44,7 +45,7 @@ impl Works {
         let mut contact = at_both_ends(increment, &state.f_contact, &next.f_contact);
         if model.has_friction() {
             friction = work_of_friction(model, last, next);
-            contact += friction - at_both_ends(increment, &friction_of(model, state), &next.f_friction);
+            contact += friction - at_both_ends(increment, &friction_forces(state), &next.f_friction);
         }
         let mut external = at_both_ends(increment, &state.f_external, &next.f_external);
         if !equations.motions.is_empty() {

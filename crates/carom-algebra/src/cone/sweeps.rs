@@ -161,7 +161,7 @@ impl Coupled<'_> {
     /// on each other it lies far beyond their cones.
     fn walked(&self, z: &[f64]) -> Option<Vec<f64>> {
         let mut now = z.to_vec();
-        for _ in &self.kinds[..] {
+        for _ in self.kinds {
             let (exact, obeys) = self.exact(&now)?;
             if obeys {
                 return Some(exact);

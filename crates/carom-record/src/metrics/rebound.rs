@@ -9,9 +9,9 @@
 //!
 //! (I. Newton, *Principia*, 1687, scholium to the laws of motion.) n is the direction of the normal
 //! contact impulse on the striker, without that of friction. A fixed obstacle has no velocity; one
-//! that moves has that of its point at the mean place Σ λ x/Σ λ of those rows; and a body has that of
-//! its centre of mass, but along an axis in which a support holds or moves it, that of the support:
-//! what its centre does there is vibration.
+//! that moves has that of its point at the mean place Σ λ x/Σ λ of those rows; and a body has that
+//! of its centre of mass, but along an axis in which a support holds or moves it, that of the
+//! support: what its centre does there is vibration.
 
 use carom_formula::Formula;
 
@@ -181,8 +181,8 @@ fn velocities<'a>(history: &'a History, party: &str) -> Vec<&'a [f64]> {
     vector(history, &format!("{party}.velocity"))
 }
 
-/// Velocity, beyond that of its centre, of a point of an obstacle that turns: ω × (x − centre). None
-/// if the rate of its rotation is unknown.
+/// Velocity, beyond that of its centre, of a point of an obstacle that turns: ω × (x − centre).
+/// None if the rate of its rotation is unknown.
 fn turning(run: &Run, contact: &str, place: [f64; 3], row: usize) -> Option<[f64; 3]> {
     let spec = run.manifest.facts.contacts.iter().find(|spec| spec.name == contact);
     let Some(turns) = spec.and_then(|spec| spec.turns.as_ref()) else { return Some([0.0; 3]) };
