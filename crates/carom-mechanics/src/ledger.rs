@@ -153,8 +153,12 @@ pub(crate) fn account(
     if stage.works_at_both_ends && !stage.is_static() {
         let mut changes = [change_of_loads(state, next, increment), 0.0];
         if !equations.motions.is_empty() {
-            for (i, now) in next.f_at_end.iter().enumerate().filter(|(i, _)| model.fixed[*i]) {
-                changes[1] += increment[i] * (now - state.f_at_end.get(i).copied().unwrap_or(0.0));
+            if !next.f_at_end.is_empty() {
+                let before = |i: usize| state.f_at_end.get(i).copied().unwrap_or(0.0);
+                let mut change: Vec<f64> =
+                    next.f_at_end.iter().enumerate().map(|(i, now)| now - before(i)).collect();
+                model.points.gather(&mut change);
+                changes[1] = model.motions.dofs().map(|i| increment[i] * change[i]).sum();
             }
             changes[0] += change_of_reactions(model, state, next, increment) - changes[1];
         }

@@ -29,7 +29,7 @@ pub struct Ledger {
     pub total_at_start: f64,
     /// Work of loads without potential, of supports and of moving primaries.
     pub external_work: f64,
-    /// What that work lacks of the work on the momentum of velocities (`works.rs`). Contact of
+    /// Work on the momentum of velocities that `external_work` lacks (`works.rs`). Contact of
     /// explicit schemes adds the work of its forces over the tolerance of gaps.
     pub unbooked: f64,
     /// Δy·x of forces from which accelerations still differ (`works.rs`).
@@ -221,6 +221,8 @@ pub struct State {
     pub f_friction: Vec<f64>,
     /// The part in it of contacts that act entirely at the end of a step; empty without.
     pub f_at_end: Vec<f64>,
+    /// The part of friction in that; empty without.
+    pub f_friction_at_end: Vec<f64>,
     /// Force on the secondary side of each contact.
     pub contact_forces: Vec<[f64; 3]>,
     /// Impulse of each contact on its secondary side since the start, projections included.
@@ -270,6 +272,7 @@ impl State {
             always("contact forces", &mut self.f_contact),
             may_lack("forces of friction", &mut self.f_friction),
             may_lack("contact forces at the end of steps", &mut self.f_at_end),
+            may_lack("friction at the end of steps", &mut self.f_friction_at_end),
             may_lack("velocities at half a step", &mut self.half_step.velocity),
         ];
         if let Some(Previous { increment, velocity, means, .. }) = &mut self.previous {
@@ -369,7 +372,7 @@ impl State {
     /// accelerations, internal forces, memory and half-step velocities are not copied: a step
     /// overwrites them. Contact forces are zero.
     pub(crate) fn follow(&mut self, start: &Self) {
-        let Self { step, time, y, f_external, f_friction, f_at_end, contact_forces, impulses, .. } = start;
+        let Self { step, time, y, f_external, f_friction, contact_forces, impulses, .. } = start;
         let Self { carried, pairs, ledger, previous, half_step, frozen, .. } = start;
         let Self { bisection, overlaps, materials, .. } = start;
         self.step = *step;
@@ -387,7 +390,8 @@ impl State {
         self.f_contact.fill(0.0);
         self.f_external.clone_from(f_external);
         self.f_friction.clone_from(f_friction);
-        self.f_at_end.clone_from(f_at_end);
+        self.f_at_end.clear();
+        self.f_friction_at_end.clear();
         self.contact_forces.clone_from(contact_forces);
         self.impulses.clone_from(impulses);
         self.carried.clone_from(carried);

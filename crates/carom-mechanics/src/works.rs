@@ -4,7 +4,7 @@
 //! of both ends     F̄ = (F_s + F_{s+1})/2                              α family, load steps
 //! of means         F̄ = the mean of the velocity update, `Stage::mean`     all others
 //! external         Δy·F̄_ext (beyond the potential) + Δy_moved·R̄
-//! contact          Δy·F̄_cont, of friction Σ q_{s+1} S with the slips S of the step
+//! contact          Δy·F̄_cont, of friction with its mean in the balance
 //! ```
 //!
 //! The balance of the α family has its forces at 1 − α_f of the step. As a quadrature of ∫F·dy this
@@ -14,21 +14,20 @@
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
-//! the balance, and the impulse M J of J = v_{s+1} − v_s − Δt ā, the change of velocities beyond
-//! the mean acceleration, where a prescribed velocity jumps.
+//! the balance. Where a prescribed velocity jumps, J = v_{s+1} − v_s − Δt ā is its change beyond
+//! its mean acceleration, and the impulse M J is one of the supports, too.
 
 use carom_algebra::sums::dot;
 use carom_time::Stage;
 
 use crate::friction_state::friction_forces;
-use crate::model::Model;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 use crate::state::{Means, State};
 
 /// Works of the forces of a step.
 pub(crate) struct Works {
-    /// Of loads beyond their potential, and of moving supports.
+    /// Work of loads beyond their potential, and of moving supports.
     pub external: f64,
     /// Δy·F̄ of the contact forces as the balance has them.
     pub contact: f64,
@@ -44,7 +43,7 @@ impl Works {
         let mut friction = 0.0;
         let mut contact = at_both_ends(increment, &state.f_contact, &next.f_contact);
         if model.has_friction() {
-            friction = work_of_friction(model, last, next);
+            friction = work_of_friction(equations, last);
             contact += friction - at_both_ends(increment, &friction_forces(state), &next.f_friction);
         }
         let mut external = at_both_ends(increment, &state.f_external, &next.f_external);
@@ -62,6 +61,9 @@ impl Works {
             }
             model.points.gather(&mut reaction);
             external += model.motions.dofs().map(|i| increment[i] * reaction[i]).sum::<f64>();
+            if !stage.is_static() {
+                external += work_of_jumps(equations, next, increment, dt);
+            }
         }
         Self { external, contact, friction }
     }
@@ -91,21 +93,47 @@ impl Works {
     }
 }
 
+/// Work on the neighbours of prescribed dofs of the inertia M J/Δt that their balance lacks: J = Δv
+/// − Δt ā is the change of prescribed velocities beyond their mean acceleration.
+fn work_of_jumps(equations: &Equations, next: &State, increment: &[f64], dt: f64) -> f64 {
+    let Equations { model, state, stage, .. } = equations;
+    let gamma = gamma(stage, dt);
+    let mut jump = vec![0.0; increment.len()];
+    for moved in &equations.motions {
+        let i = moved.dof;
+        let mean = (1.0 - gamma) * state.a[i] + gamma * moved.motion[2];
+        jump[i] = next.v[i] - state.v[i] - dt * mean;
+    }
+    model.points.carry(&mut jump);
+    let mut inertia = vec![0.0; increment.len()];
+    model.mass.multiply_into(&jump, &mut inertia);
+    let all = dot(increment, &inertia);
+    model.points.gather(&mut inertia);
+    let of_prescribed: f64 = model.motions.dofs().map(|i| increment[i] * inertia[i]).sum();
+    (all - of_prescribed) / dt
+}
+
 /// Work Δy·(F_s + F_{s+1})/2.
 pub(crate) fn at_both_ends(increment: &[f64], before: &[f64], now: &[f64]) -> f64 {
     let forces = before.iter().zip(now);
     increment.iter().zip(forces).map(|(moved, (before, now))| 0.5 * moved * (before + now)).sum()
 }
 
-/// Work Σ q·S of the tractions at the end of a step over its slips S.
-fn work_of_friction(model: &Model, last: &Evaluation, next: &State) -> f64 {
+/// Work of friction with its mean in the balance of a step. With the mean of both ends it could be
+/// positive where a slip begins or ends.
+fn work_of_friction(equations: &Equations, last: &Evaluation) -> f64 {
+    let Equations { model, state, stage, .. } = equations;
+    let before = friction_forces(state);
     let mut work = 0.0;
-    for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].friction.is_some()) {
-        for (p, pair) in next.pairs[k].iter().enumerate().filter(|(_, pair)| pair.active) {
-            for (slip, traction) in last.slip_rows((k, p)).zip(pair.tangential.traction) {
-                work += traction * slip.along(&last.at.increment);
-            }
-        }
+    for (i, moved) in last.at.increment.iter().enumerate() {
+        // The balance of massless dofs has no forces of the start.
+        let mean = if model.massless[i] && !stage.is_static() {
+            last.forces.friction[i] / stage.weights.external
+        } else {
+            let averaged = before[i] - state.f_friction_at_end.get(i).copied().unwrap_or(0.0);
+            last.forces.friction[i] + stage.before.contact * averaged
+        };
+        work += moved * mean;
     }
     work
 }
@@ -122,7 +150,7 @@ fn work_of_friction(model: &Model, last: &Evaluation, next: &State) -> f64 {
 /// The first part vanishes in schemes of second order, the second one where forces are steady.
 /// `relaxing`: Δy·x, which becomes that of the step's end.
 pub(crate) fn work_ahead(stage: &Stage, dt: f64, changes: [f64; 2], relaxing: &mut f64) -> f64 {
-    let gamma = stage.velocity.slope / (stage.acceleration.slope * dt);
+    let gamma = gamma(stage, dt);
     let alpha_m = stage.before.mass;
     let carried = 1.0 - gamma - alpha_m;
     let mut work = 0.0;
@@ -135,4 +163,9 @@ pub(crate) fn work_ahead(stage: &Stage, dt: f64, changes: [f64; 2], relaxing: &m
     work += carried * (next - *relaxing);
     *relaxing = next;
     work
+}
+
+/// γ of Δv = Δt [(1 − γ) a_s + γ a_{s+1}], from the maps of a stage.
+fn gamma(stage: &Stage, dt: f64) -> f64 {
+    stage.velocity.slope / (stage.acceleration.slope * dt)
 }

@@ -24,8 +24,8 @@ use crate::sums::max_abs;
 const SWEEPS: usize = 10;
 /// Largest number of attempts to solve the problem exactly.
 const ATTEMPTS: usize = 200;
-/// Number of attempts from which on the way of a sweep is followed further, and all normal forces
-/// are solved for together.
+/// Number of attempts from which on the way of a sweep is followed further, and for as many
+/// attempts all normal forces are solved for together.
 const PATIENCE: usize = 10;
 /// Longest way, in those of one sweep, that is followed at once.
 const FARTHEST: f64 = 65536.0;
@@ -128,11 +128,14 @@ impl Coupled<'_> {
             }
             if attempt >= PATIENCE {
                 self.leap(z, Self::sweep);
+            }
+            let presses = (PATIENCE..2 * PATIENCE).contains(&attempt);
+            if presses {
                 self.leap(&mut pressed, Self::press);
                 (0..SWEEPS).for_each(|_| self.press(&mut pressed));
             }
             (0..SWEEPS).for_each(|_| self.sweep(z));
-            let of_pressed = || if attempt < PATIENCE { None } else { self.walked(&pressed) };
+            let of_pressed = || if presses { self.walked(&pressed) } else { None };
             if let Some(exact) = self.settled(z).or_else(of_pressed) {
                 *z = exact;
                 self.admit(z);

@@ -156,7 +156,13 @@ pub(super) trait OnFacets {
             }
         }
         let size = dimension * all.len();
-        mean[..size * size].fill(0.0);
+        // A pair may have moved to a joint of more facets since its row was measured: its tangent
+        // is then left out, and the next iteration has it.
+        let Some(mean) = mean.get_mut(..size * size) else {
+            mean.fill(0.0);
+            return;
+        };
+        mean.fill(0.0);
         for (part, nodes) in parts.iter().zip(&nodes) {
             let own = dimension * nodes.len();
             let mut of_part = vec![0.0; own * own];

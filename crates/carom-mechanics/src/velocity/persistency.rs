@@ -292,9 +292,10 @@ pub(crate) fn contact_forces_into(model: &Model, state: &mut State, rows: &[Rows
         }
     }
     state.f_friction.clear();
+    state.f_friction_at_end.clear();
     if model.has_friction() {
         let mut friction = vec![0.0; model.dofs()];
-        let mut at_end = std::mem::take(&mut state.f_at_end);
+        let mut at_end = vec![0.0; if acts_at_end { model.dofs() } else { 0 }];
         each_slip(model, state, |k, _, traction, row| {
             row.add_to(traction, &mut friction);
             if model.contacts[k].at_the_end {
@@ -302,8 +303,9 @@ pub(crate) fn contact_forces_into(model: &Model, state: &mut State, rows: &[Rows
             }
         });
         state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
+        state.f_at_end.iter_mut().zip(&at_end).for_each(|(force, part)| *force += part);
         state.f_friction = friction;
-        state.f_at_end = at_end;
+        state.f_friction_at_end = at_end;
     }
 }
 

@@ -97,12 +97,9 @@ pub(super) fn of_alpha(model: &Model, scheme: &Scheme, before: &State, now: &Sta
         0.5 * (old + new)
     };
     let worked: f64 = moved.iter().enumerate().map(|(i, moved)| moved * work(i)).sum();
-    // Friction works with its value at the end.
-    Some(
-        worked + friction_lag(model, before, now)
-            - (end.strain - start.strain)
-            - (end.kinetic - start.kinetic),
-    )
+    let alpha_f = if acts_at_end > 0 { 0.0 } else { scheme.alpha_f };
+    let stored = end.strain - start.strain + end.kinetic - start.kinetic;
+    Some(worked + friction_lag(model, before, now, alpha_f) - stored)
 }
 
 fn has_friction(model: &Model) -> bool {
@@ -110,15 +107,17 @@ fn has_friction(model: &Model) -> bool {
 }
 
 /// What friction, in the forces that follow from the balance, does with the mean of both ends, less
-/// what it does with its value at the end, which is booked.
-fn friction_lag(model: &Model, before: &State, now: &State) -> f64 {
+/// what it does with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
+fn friction_lag(model: &Model, before: &State, now: &State, alpha_f: f64) -> f64 {
     if !has_friction(model) {
         return 0.0;
     }
     let moved = sum(&now.y, -1.0, &before.y);
     let stored = now.ledger.stick_springs - before.ledger.stick_springs;
     let booked = stored - (now.ledger.friction_work - before.ledger.friction_work);
-    0.5 * (dot(&moved, &before.f_friction) - booked)
+    let old = dot(&moved, &before.f_friction);
+    let new = (booked - alpha_f * old) / (1.0 - alpha_f);
+    0.5 * (old + new) - booked
 }
 
 /// What a step of one or two stages that end with a balance dissipates; none if a projection has
@@ -226,7 +225,7 @@ fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
     };
     let moved = now.y.iter().zip(&before.y).enumerate();
     let worked = moved.map(|(i, (y, old))| (y - old) * work(i)).sum::<f64>();
-    worked + friction_lag(model, before, now) - (end.strain - start.strain)
+    worked + friction_lag(model, before, now, 0.0) - (end.strain - start.strain)
 }
 
 /// Newton's tolerance.
