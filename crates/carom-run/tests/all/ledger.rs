@@ -55,7 +55,7 @@ fn sum(x: &[f64], factor: f64, y: &[f64]) -> Vec<f64> {
     x.iter().zip(y).map(|(x, y)| x + factor * y).collect()
 }
 
-/// What a step of the α family dissipates: what the forces that follow from its balance do with the
+/// Dissipation of a step of the α family: work of the forces that follow from its balance, with the
 /// mean of both ends, less the change of the energies. None with contacts of both kinds, of which
 /// the balance gives the sum alone.
 pub(super) fn of_alpha(model: &Model, scheme: &Scheme, before: &State, now: &State, dt: f64) -> Option<f64> {
@@ -106,8 +106,8 @@ fn has_friction(model: &Model) -> bool {
     model.contacts.iter().any(|contact| contact.friction.is_some())
 }
 
-/// What friction, in the forces that follow from the balance, does with the mean of both ends, less
-/// what it does with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
+/// Work of friction, in the forces that follow from the balance, with the mean of both ends, less
+/// that with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
 fn friction_lag(model: &Model, before: &State, now: &State, alpha_f: f64) -> f64 {
     if !has_friction(model) {
         return 0.0;
@@ -214,7 +214,7 @@ fn of_central(model: &Model, before: &State, now: &State, dt: f64) -> f64 {
         - (end.kinetic - start.kinetic)
 }
 
-/// What a load step dissipates: the means of forces that are in equilibrium at its ends work,
+/// Dissipation of a load step: the means of forces that are in equilibrium at its ends work,
 /// whatever was in equilibrium at the start of the run.
 fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
     let [start, end] = [before, now].map(|state| Energies::of(model, &state.y, &state.v));
