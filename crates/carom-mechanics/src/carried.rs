@@ -10,6 +10,10 @@
 //! c Δt q: the impulse c Δ(Δt q) that no force of a step accounts for. Both equations are linear,
 //! so the part of q that is due to contact obeys the first one with the mean contact force. This
 //! part is stored here, as a resultant on each secondary side.
+//!
+//! Velocities are ahead of the forces by c Δt (F − q) in schemes of second order (`works.rs`). What
+//! they do not give back after a projection, or with another Δt, is work of the loads, supports and
+//! obstacles whose forces these are: without it, dissipation would depend on the observer.
 
 use crate::state::State;
 
@@ -19,6 +23,8 @@ pub(crate) fn change_step(state: &mut State, factor: f64, dt: f64) {
     if old == 0.0 || old == dt || factor == 0.0 {
         return;
     }
+    keep(state, factor * (1.0 - dt / old) * state.ledger.relaxing);
+    state.ledger.relaxing *= dt / old;
     for k in 0..state.carried.forces.len() {
         let force = state.carried.forces[k];
         record(state, k, force.map(|f| factor * (dt - old) * f));
@@ -37,6 +43,8 @@ pub(crate) fn advance(state: &mut State, means: &[[f64; 3]], weights: [f64; 2]) 
 
 /// Records a projection: accelerations satisfy the balance at the state again.
 pub(crate) fn project(state: &mut State, factor: f64) {
+    keep(state, factor * state.ledger.relaxing);
+    state.ledger.relaxing = 0.0;
     let forces = state.contact_forces.clone();
     replace(state, factor, &forces);
 }
@@ -48,6 +56,12 @@ pub(crate) fn replace(state: &mut State, factor: f64, forces: &[[f64; 3]]) {
         let change = std::array::from_fn(|i| factor * state.carried.dt * (now[i] - old[i]));
         record(state, k, change);
     }
+}
+
+/// Books work on the momentum that velocities keep.
+pub(crate) fn keep(state: &mut State, kept: f64) {
+    state.ledger.external_work += kept;
+    state.ledger.unbooked -= kept;
 }
 
 fn record(state: &mut State, contact: usize, change: [f64; 3]) {

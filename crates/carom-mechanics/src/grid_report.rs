@@ -115,6 +115,8 @@ pub struct GridReport {
     pub penetration: Depths,
     /// Contacts of which a node was then too deep to be trusted.
     pub doubtful: BTreeSet<usize>,
+    /// Whether velocities were projected at the end of a stage within a step.
+    pub projected_within: bool,
     /// Events in order.
     pub events: Vec<LogEvent>,
 }
@@ -127,6 +129,7 @@ impl GridReport {
         self.releases += step.releases.len() as u32;
         self.penetration = self.penetration.max(step.penetration);
         self.doubtful.extend(step.doubtful);
+        self.projected_within |= step.projected_within;
         let met = step.meetings.into_iter().chain(std::iter::repeat(None));
         for ((contact, node), met) in step.activations.into_iter().zip(met) {
             self.events.push(LogEvent::ActiveSet { time, contact, node, active: true, met });

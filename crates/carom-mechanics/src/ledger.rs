@@ -151,17 +151,9 @@ pub(crate) fn account(
     next.ledger.contact_work += last.springs - next.ledger.springs;
     next.ledger.springs = last.springs;
     if stage.works_at_both_ends && !stage.is_static() {
-        let mut changes = [change_of_loads(state, next, increment), 0.0];
-        if !equations.motions.is_empty() {
-            if !next.f_at_end.is_empty() {
-                let before = |i: usize| state.f_at_end.get(i).copied().unwrap_or(0.0);
-                let mut change: Vec<f64> =
-                    next.f_at_end.iter().enumerate().map(|(i, now)| now - before(i)).collect();
-                model.points.gather(&mut change);
-                changes[1] = model.motions.dofs().map(|i| increment[i] * change[i]).sum();
-            }
-            changes[0] += change_of_reactions(model, state, next, increment) - changes[1];
-        }
+        let [mut averaged, at_end] = changes_of_reactions(model, state, next, increment);
+        averaged += change_of_loads(state, next, increment);
+        let changes = [averaged, at_end];
         next.ledger.unbooked += work_ahead(stage, dt, changes, &mut next.ledger.relaxing);
     }
     book_contact_forces(model, next);
@@ -184,9 +176,18 @@ pub(crate) fn balance_into(model: &Model, state: &State, a: &[f64], residual: &m
     model.points.gather(residual);
 }
 
-/// Δy·ΔR of moving supports: as [`change_of_loads`]. The inertia of their own motion is known: its
-/// work is the change of their kinetic energy.
-fn change_of_reactions(model: &Model, state: &State, next: &State, increment: &[f64]) -> f64 {
+/// Δy·ΔR of moving supports, of the forces that the balance averages and of those that act at its
+/// end: as [`change_of_loads`]. The inertia of their own motion is known: its work is the change of
+/// their kinetic energy.
+pub(crate) fn changes_of_reactions(
+    model: &Model,
+    state: &State,
+    next: &State,
+    increment: &[f64],
+) -> [f64; 2] {
+    if model.motions.is_empty() {
+        return [0.0; 2];
+    }
     let reactions = |state: &State| {
         let mut a = state.a.clone();
         model.motions.dofs().for_each(|i| a[i] = 0.0);
@@ -197,7 +198,13 @@ fn change_of_reactions(model: &Model, state: &State, next: &State, increment: &[
     };
     let before = reactions(state);
     let now = reactions(next);
-    model.motions.dofs().map(|i| increment[i] * (now[i] - before[i])).sum()
+    let all: f64 = model.motions.dofs().map(|i| increment[i] * (now[i] - before[i])).sum();
+    let mut change = next.f_at_end.clone();
+    change.resize(model.dofs(), 0.0);
+    change.iter_mut().zip(&state.f_at_end).for_each(|(change, before)| *change -= before);
+    model.points.gather(&mut change);
+    let at_end: f64 = model.motions.dofs().map(|i| increment[i] * change[i]).sum();
+    [all - at_end, at_end]
 }
 
 /// Contact forces of a solved last stage as its balance has them, with friction along H(y_½)

@@ -53,9 +53,10 @@ impl Works {
                 let change: Vec<f64> = next.v.iter().zip(&state.v).map(|(v, old)| (v - old) / dt).collect();
                 model.mass.multiply_into(&change, &mut reaction);
             }
+            let turned = turned_friction(last, next);
             for (i, force) in reaction.iter_mut().enumerate() {
                 let internal = state.f_internal[i] + next.f_internal[i];
-                let contact = state.f_contact[i] + next.f_contact[i];
+                let contact = state.f_contact[i] + next.f_contact[i] + turned.get(i).copied().unwrap_or(0.0);
                 let loads = state.f_external[i] + next.f_external[i];
                 *force += 0.5 * (internal + contact - loads) - model.gravity[i];
             }
@@ -91,6 +92,20 @@ impl Works {
         }
         Self { external, contact: dot(increment, &means.contact), friction }
     }
+}
+
+/// Friction at the end of a step along H(y_½), as the balance has it, less that along H(y_{s+1}),
+/// which is that of the next step; empty without friction.
+fn turned_friction(last: &Evaluation, next: &State) -> Vec<f64> {
+    let mut turned: Vec<f64> = next.f_friction.iter().map(|force| -force).collect();
+    let pairings = last.at.pairings.iter().enumerate();
+    for (k, pairing) in pairings.filter(|(k, _)| !last.slips[*k].is_empty()) {
+        for (p, pair) in pairing.pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
+            let along = last.slip_rows((k, p)).zip(pair.tangential.traction);
+            along.for_each(|(row, traction)| row.add_to(traction, &mut turned));
+        }
+    }
+    turned
 }
 
 /// Work on the neighbours of prescribed dofs of the inertia M J/Δt that their balance lacks: J = Δv
@@ -155,14 +170,21 @@ pub(crate) fn work_ahead(stage: &Stage, dt: f64, changes: [f64; 2], relaxing: &m
     let carried = 1.0 - gamma - alpha_m;
     let mut work = 0.0;
     let mut next = -alpha_m * *relaxing;
-    for (change, alpha_f) in changes.into_iter().zip([stage.before.contact, 0.0]) {
-        work += (0.5 - alpha_f - carried) * change;
+    let alphas = [stage.before.contact, 0.0];
+    for ((change, alpha_f), lead) in changes.into_iter().zip(alphas).zip(leads(stage, dt)) {
+        work += lead * change;
         next += (alpha_f - alpha_m) * change;
     }
     next /= stage.weights.mass;
     work += carried * (next - *relaxing);
     *relaxing = next;
     work
+}
+
+/// ½ − α_f − c of the forces that the balance averages and of those that act at its end.
+pub(crate) fn leads(stage: &Stage, dt: f64) -> [f64; 2] {
+    let carried = 1.0 - gamma(stage, dt) - stage.before.mass;
+    [0.5 - stage.before.contact - carried, 0.5 - carried]
 }
 
 /// γ of Δv = Δt [(1 − γ) a_s + γ a_{s+1}], from the maps of a stage.

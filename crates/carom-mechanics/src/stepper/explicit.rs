@@ -124,8 +124,16 @@ impl Stepper for Explicit {
             work.put(state);
         }
         let leaves = Some(bound);
-        let finish =
-            Finish { model, start: state, dt, carried: 0.0, paths: Vec::new(), previous: None, leaves };
+        let finish = Finish {
+            model,
+            start: state,
+            dt,
+            carried: 0.0,
+            leads: [0.0; 2],
+            paths: Vec::new(),
+            previous: None,
+            leaves,
+        };
         finish.accept(next, report, work)
     }
 }

@@ -9,6 +9,7 @@ use super::watch::depth;
 use super::{Accepted, StepReport, difference, nodes_at};
 use crate::carried;
 use crate::friction_state::book_states;
+use crate::ledger::changes_of_reactions;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::{Previous, State};
@@ -24,6 +25,8 @@ pub(super) struct Finish<'a> {
     pub dt: f64,
     /// c of the momentum in accelerations (`carried.rs`); 0 of schemes that carry none.
     pub carried: f64,
+    /// ½ − α_f − c of the forces by which velocities are ahead (`works.rs`); 0 of other schemes.
+    pub leads: [f64; 2],
     /// The parts of the step, to find when nodes met the other side; none if that is not asked.
     pub paths: Vec<Path<'a>>,
     /// What a two-step scheme needs of this step, unless velocities jump at its end.
@@ -60,11 +63,18 @@ impl Finish<'_> {
         restitution::take(model, &mut next, taken);
         let closed = closed(model, start, &next, &report.activations);
         let impact = Impact { dt, start, closed };
+        let before = (self.leads != [0.0; 2] && !model.motions.is_empty()).then(|| next.clone());
         let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
         if let Some(jump) = projected {
             report.projection = jump;
             carried::project(&mut next, self.carried);
-            next.ledger.relaxing = 0.0;
+            if let Some(before) = before {
+                // Contact forces are those of the projected motion.
+                let increment: Vec<f64> = next.y.iter().zip(&start.y).map(|(y, old)| y - old).collect();
+                let changes = changes_of_reactions(model, &before, &next, &increment);
+                let ahead = changes.into_iter().zip(self.leads).map(|(change, lead)| lead * change);
+                carried::keep(&mut next, -ahead.sum::<f64>());
+            }
         }
         if !released.is_empty() {
             report.restitution = separate(model, &mut next, &released, &mut work.system)?;

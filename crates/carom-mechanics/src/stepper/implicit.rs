@@ -25,6 +25,7 @@ use crate::stage::grip::solve_by_grip;
 use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
 use crate::velocity::persistency::contact_forces_into;
+use crate::works;
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
@@ -128,6 +129,7 @@ impl Stepper for Implicit {
             let is_last = k + 1 == self.kernel.stages();
             let projected =
                 if is_last { None } else { project_within(&equations, &mut solved, &mut next, work)? };
+            report.projected_within |= projected.is_some();
             let contact_forces = projected.unwrap_or_else(|| ledger::contact_forces(model, &solved));
             ledger::add_stage(&equations, &solved, &contact_forces, previous, &mut means);
             guess = work.spare.copy(&solved.at);
@@ -193,6 +195,9 @@ impl Stepper for Implicit {
             next.pairs[k].iter_mut().zip(gaps).for_each(|(pair, gap)| pair.start = gap);
         }
 
+        let stage = &equations.stage;
+        let is_ahead = stage.works_at_both_ends && !stage.is_static();
+        let leads = if is_ahead { works::leads(stage, dt) } else { [0.0; 2] };
         let keeps = self.kernel.two_step() || goes_on(&equations);
         let previous = keeps.then(|| Previous {
             dt,
@@ -202,7 +207,8 @@ impl Stepper for Implicit {
         });
         work.spare.put(solved);
         let paths = paths(state, &finished, &ends);
-        let finish = Finish { model, start: state, dt, carried: factor, paths, previous, leaves: None };
+        let finish =
+            Finish { model, start: state, dt, carried: factor, leads, paths, previous, leaves: None };
         finish.accept(next, report, work)
     }
 }

@@ -173,7 +173,7 @@ impl Stepper for Impulsive {
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
         let leaves = Some(depth(model, state) + fastest + tie);
         let paths = vec![Path { start: [&state.y, &state.v, &state.a], from: state.time, to }];
-        Finish { model, start: state, dt, carried: 0.0, paths, previous: None, leaves }
+        Finish { model, start: state, dt, carried: 0.0, leads: [0.0; 2], paths, previous: None, leaves }
             .accept(next, report, work)
     }
 }

@@ -51,6 +51,8 @@ pub struct StepReport {
     pub dependent: Vec<(usize, usize)>,
     /// Jump of kinetic energy where contact or stick begins.
     pub projection: f64,
+    /// Whether velocities were projected at the end of a stage within the step.
+    pub projected_within: bool,
     /// Change of kinetic energy where an explicit step with another length is begun.
     pub begun: f64,
     /// Jump of kinetic energy by restitution where contact ends.

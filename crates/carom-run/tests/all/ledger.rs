@@ -102,6 +102,15 @@ pub(super) fn of_alpha(model: &Model, scheme: &Scheme, before: &State, now: &Sta
     Some(worked + friction_lag(model, before, now, alpha_f) - stored)
 }
 
+/// Work of loads on the momentum in accelerations that a projection at the end of a step leaves to
+/// the velocities, c Δy·x with (1 − α_m) x = (α_f − α_m) ΔF_ext − α_m x_s.
+pub(super) fn kept_by_projection(scheme: &Scheme, before: &State, now: &State) -> f64 {
+    let moved = sum(&now.y, -1.0, &before.y);
+    let change = dot(&moved, &sum(&now.f_external, -1.0, &before.f_external));
+    let ahead = (scheme.alpha_f - scheme.alpha_m) * change - scheme.alpha_m * before.ledger.relaxing;
+    (1.0 - scheme.gamma - scheme.alpha_m) * ahead / (1.0 - scheme.alpha_m)
+}
+
 fn has_friction(model: &Model) -> bool {
     model.contacts.iter().any(|contact| contact.friction.is_some())
 }
@@ -292,6 +301,7 @@ fn judge(case: &Case, steps: u64) -> Option<Judged> {
                 .filter(|pair| pair.active)
                 .any(|pair| !before.iter().any(|old| old.active && old.node == pair.node))
         });
+        let projected = projected || report.projected_within;
         let projected = projected || report.events.iter().any(|e| matches!(e, LogEvent::Projection { .. }));
         let predicted = match (&integrator, &alpha, &kernel) {
             _ if is_static => Some(of_statics(model, &before, now)),

@@ -27,17 +27,17 @@ fn incompressible(of: &impl OfInvariants, [first, second]: [f64; 2]) -> f64 {
 /// P of the sheet of a law of large bulk modulus, whose second stretch is free if none is given.
 fn of_sheet<W: OfInvariants>(law: Isochoric<W>, first: f64, second: Option<f64>) -> f64 {
     let sheet = PlaneStress(law);
-    let at = |second: f64| sheet.at(&Mat([[first - 1.0, 0.0], [0.0, second - 1.0]])).unwrap();
+    let at = |second: f64| Mat([[first - 1.0, 0.0], [0.0, second - 1.0]]);
     let mut across = second.unwrap_or(1.0 / first.sqrt());
     if second.is_none() {
         for _ in 0..30 {
-            let point = at(across);
             let unit = Vector([0.0, 1.0]);
-            across -= sheet.stress(&point).0[1][1] / sheet.tangent(&point, &unit, &unit).0[1][1];
+            let slope = sheet.tangent_at(&at(across), &unit, &unit).0[1][1];
+            across -= sheet.stress_at(&at(across)).0[1][1] / slope;
         }
-        assert!(sheet.stress(&at(across)).0[1][1].abs() < 1e-9);
+        assert!(sheet.stress_at(&at(across)).0[1][1].abs() < 1e-9);
     }
-    sheet.stress(&at(across)).0[0][0]
+    sheet.stress_at(&at(across)).0[0][0]
 }
 
 fn agrees<W: OfInvariants>(of: W) {
@@ -75,7 +75,7 @@ fn tension_of_mooney_and_rivlin_is_the_formula() {
 #[test]
 fn swelling_has_the_stress_of_the_bulk_modulus() {
     let h = Mat::<3>::identity() * 0.2;
-    for found in [stress(&mooney_rivlin(), &h), stress(&yeoh(), &h)] {
+    for found in [mooney_rivlin().stress_at(&h), yeoh().stress_at(&h)] {
         let expected = BULK * 3.0 * 1.2_f64.ln() / 1.2;
         assert!(distance(&found, &(Mat::identity() * expected)) < 1e-14);
     }
