@@ -162,8 +162,8 @@ name = "floor"
 secondary = "disc.arc"
 primary = { plane = { point = [0, 0], normal = [0, 1] }, motion = { y = "0.5*t" } }
 [time]
-end = 0.6
-step = 0.002
+end = 0.4
+step = 0.005
 scheme = { kind = "energy-momentum" }
 [output]
 fields_every = 0
