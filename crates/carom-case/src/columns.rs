@@ -146,11 +146,12 @@ impl<'a> Recorded<'a> {
             columns.add("slip", &label.length, "largest slip of a pair since it closed, so far");
         }
         let moving = || self.contacts.iter().filter(|contact| !contact.motion.is_fixed());
-        let bodies = self.bodies.iter().map(|body| &body.name);
-        for name in bodies.chain(moving().map(|contact| &contact.name)) {
-            columns.vector(&format!("{name}.center"), &label.length, "centre of mass");
-            let what = "velocity of the centre of mass";
-            columns.vector(&format!("{name}.velocity"), &label.velocity, what);
+        let bodies = self.bodies.iter().map(|body| (&body.name, "centre of mass"));
+        let obstacles =
+            moving().map(|contact| (&contact.name, "point of the moving obstacle that `about` names"));
+        for (name, point) in bodies.chain(obstacles) {
+            columns.vector(&format!("{name}.center"), &label.length, point);
+            columns.vector(&format!("{name}.velocity"), &label.velocity, &format!("velocity of the {point}"));
         }
         if !self.yielding.is_empty() {
             let what = "work of plastic flow on the bodies that is dissipated, cumulative, ≤ 0";
@@ -215,7 +216,7 @@ const ENERGIES: [(&str, &str); 10] = [
     ),
     (
         "energy_created",
-        "largest rise of total − external_work above its running minimum so far, beyond work that means over steps have missed since",
+        "largest rise of total − external_work above its running minimum so far; not what velocities are ahead of the works of loads, supports and obstacles",
     ),
     (
         "energy_scale",
