@@ -34,8 +34,8 @@ pub struct TimeSpec {
         with = of_time
     )]
     pub scheme: SchemeSpec,
-    /// The run stops if scheme and contact create more than this fraction of the energy scale so far:
-    /// the columns `energy_created` and `energy_scale`; false: it never stops for this reason.
+    /// The run stops if scheme and contact create more than this fraction of the energy scale so
+    /// far: the columns `energy_created` and `energy_scale`; false: it never stops for this reason.
     #[key(NumberOrFalse(POSITIVE), default = "0.02", paper = "false", with = energy_guard)]
     pub energy_guard: Option<f64>,
     /// What takes a grid step at which the run would stop, because no substep is accepted or the

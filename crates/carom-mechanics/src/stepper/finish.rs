@@ -63,19 +63,21 @@ impl Finish<'_> {
         restitution::take(model, &mut next, taken);
         let closed = closed(model, start, &next, &report.activations);
         let impact = Impact { dt, start, closed };
-        let before = (self.leads != [0.0; 2] && !model.motions.is_empty()).then(|| next.clone());
+        let is_ahead = self.leads != [0.0; 2] && !model.motions.is_empty();
+        let before = is_ahead.then(|| work.copy(&next));
         let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;
         if let Some(jump) = projected {
             report.projection = jump;
             carried::project(&mut next, self.carried);
-            if let Some(before) = before {
+            if let Some(before) = &before {
                 // Contact forces are those of the projected motion.
                 let increment: Vec<f64> = next.y.iter().zip(&start.y).map(|(y, old)| y - old).collect();
-                let changes = changes_of_reactions(model, &before, &next, &increment);
+                let changes = changes_of_reactions(model, before, &next, &increment);
                 let ahead = changes.into_iter().zip(self.leads).map(|(change, lead)| lead * change);
                 carried::keep(&mut next, -ahead.sum::<f64>());
             }
         }
+        before.into_iter().for_each(|before| work.put(before));
         if !released.is_empty() {
             report.restitution = separate(model, &mut next, &released, &mut work.system)?;
         }
