@@ -109,14 +109,14 @@ fn turned_friction(last: &Evaluation, next: &State) -> Vec<f64> {
 }
 
 /// Work on the neighbours of prescribed dofs of the inertia M J/Δt that their balance lacks: J = Δv
-/// − Δt ā is the change of prescribed velocities beyond their mean acceleration.
+/// − Δt (a_s + a_{s+1})/2 is the change of prescribed velocities beyond their acceleration, which
+/// the balance averages like forces.
 fn work_of_jumps(equations: &Equations, next: &State, increment: &[f64], dt: f64) -> f64 {
-    let Equations { model, state, stage, .. } = equations;
-    let gamma = gamma(stage, dt);
+    let Equations { model, state, .. } = equations;
     let mut jump = vec![0.0; increment.len()];
     for moved in &equations.motions {
         let i = moved.dof;
-        let mean = (1.0 - gamma) * state.a[i] + gamma * moved.motion[2];
+        let mean = 0.5 * (state.a[i] + moved.motion[2]);
         jump[i] = next.v[i] - state.v[i] - dt * mean;
     }
     model.points.carry(&mut jump);
