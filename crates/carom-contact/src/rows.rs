@@ -123,14 +123,20 @@ impl Rows {
 
     /// Removes the last row and returns its gap, infinite if there was none.
     pub fn pop(&mut self) -> f64 {
-        let Some(gap) = self.gaps.pop() else { return f64::INFINITY };
-        self.starts.pop();
-        self.reversed.pop();
-        self.own.pop();
+        let Some(&gap) = self.gaps.last() else { return f64::INFINITY };
+        self.truncate(self.len() - 1);
+        gap
+    }
+
+    /// Removes all rows from `first` on.
+    pub(crate) fn truncate(&mut self, first: usize) {
+        self.gaps.truncate(first);
+        self.starts.truncate(first + 1);
+        self.reversed.truncate(first);
+        self.own.truncate(first);
         let end = self.starts.last().copied().unwrap_or(0);
         self.nodes.truncate(end);
         self.gradients.truncate(end * self.dimension);
-        gap
     }
 
     /// Adds a copy of a row of the same dimension.

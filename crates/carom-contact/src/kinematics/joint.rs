@@ -104,7 +104,7 @@ pub(super) trait OnFacets {
         let first = rows.len();
         let mut own = None;
         for mut part in self.parts(pair, y) {
-            self.measure_one(&mut part, y, rows)?;
+            self.measure_one(&mut part, y, rows).inspect_err(|_| rows.truncate(first))?;
             own = own.or(Some([part.xi, part.eta]));
         }
         [pair.xi, pair.eta] = own.unwrap_or([pair.xi, pair.eta]);
@@ -127,7 +127,7 @@ pub(super) trait OnFacets {
         }
         let first = rows.len();
         for part in self.parts(pair, y) {
-            self.slip_of_one(&part, y, rows)?;
+            self.slip_of_one(&part, y, rows).inspect_err(|_| rows.truncate(first))?;
         }
         rows.average_from(first, self.dimension() - 1);
         Ok(())

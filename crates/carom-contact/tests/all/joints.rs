@@ -106,3 +106,24 @@ fn the_normal_at_a_ridge_is_that_of_symmetry() {
         assert_eq!((pairing.pairs[0].joint, pairing.pairs[0].facet), (None, 0));
     }
 }
+
+/// Where one of the facets of a joint has no closest point, the pair has no row: the rows of other
+/// pairs stay as they are.
+#[test]
+fn a_joint_that_cannot_be_measured_adds_no_row() {
+    // The node is below the end of a straight facet, and twice as deep as the radius of curvature of
+    // the other one.
+    let y = [[0.0, -5.0], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0], [0.5, 0.0], [-0.5, 0.05]];
+    let surface = Surface::new(FacetShape::L3, &[vec![1, 2, 4], vec![2, 3, 5]], &[1.0; 2]);
+    let contact = NodeToFacet::new(vec![0], surface, Detection::ClosestPoint);
+    let [single, joint] = [None, Some(1)].map(|joint| Pair { joint, active: true, ..Pair::open(0, 0, 1.0) });
+    let y = y.as_flattened();
+    let mut rows = Rows::new(2);
+    contact.measure(&mut single.clone(), y, &mut rows).unwrap();
+    assert!(contact.measure(&mut joint.clone(), y, &mut rows).is_err());
+    assert_eq!(rows.len(), 1);
+    let mut slips = Rows::new(2);
+    contact.slip(&single, y, y, &mut slips).unwrap();
+    assert!(contact.slip(&joint, y, y, &mut slips).is_err());
+    assert_eq!(slips.len(), 1);
+}

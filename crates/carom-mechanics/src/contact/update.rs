@@ -313,8 +313,7 @@ impl<'a> ContactUpdate<'a> {
                 }
                 Some(rubs)
             };
-            // Pairs that were found since the evaluation have no rows yet.
-            let pairs = &evaluation.at.pairings[k].pairs[..evaluation.rows[k].len()];
+            let pairs = &evaluation.at.pairings[k].pairs;
             let rubs: Vec<Option<FrictionPair>> = pairs.iter().enumerate().map(rub).collect();
             let pairs = &mut evaluation.at.pairings[k].pairs;
             let changes =
@@ -341,7 +340,7 @@ fn dragged(equations: &Equations, evaluation: &Evaluation) -> BTreeSet<(usize, u
         let pair = &evaluation.at.pairings[k].pairs[p];
         let sticks = contact.friction.is_some() && pair.tangential.friction_state == FrictionState::Stick;
         let is_held = sticks && contact.augmentation.is_none() && equations.stick_spring(k, pair).is_none();
-        is_held && p < evaluation.rows[k].len() && length(evaluation.slip_of((k, p))) > model.gap_tolerance
+        is_held && length(evaluation.slip_of((k, p))) > model.gap_tolerance
     };
     let sliding: BTreeSet<_> = evaluation.pressing().filter(slides).collect();
     if sliding.is_empty() {
