@@ -139,7 +139,7 @@ pub const HISTORY: [Definition; 28] = [
     d(
         "energy_error",
         Unit::None,
-        "max |dissipation − contact_work|/E*; without contact_work where an obstacle moves",
+        "max |dissipation − contact_work|/E*",
         OWN,
         "largest energy that time integrator and contact dissipated or created up to any time, divided by the largest kinetic + strain energy; friction and loads do not count",
         ledger::by_scheme,
@@ -205,7 +205,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::None,
         "−contact_work_last/E*",
         "Krenk 2006",
-        "energy removed by contact forces and projections by the end, divided by the largest kinetic + strain energy; negative if supplied, for example by an obstacle that moves",
+        "energy removed by contact forces and projections by the end, divided by the largest kinetic + strain energy; negative if contact creates energy; work of obstacles that move is not among it",
         ledger::by_contact,
     ),
     d(

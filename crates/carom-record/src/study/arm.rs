@@ -43,29 +43,31 @@ pub fn sets_step(set: &str) -> bool {
     set.split('=').next().is_some_and(|key| key.trim() == "time.step")
 }
 
-/// The step of an arm: the value it sets for the key, or that of its case; 1/n for a number of
-/// cells and for the factor of refinement.
+/// The step of an arm: the value it sets for the key, or that of its case; 1/n for a count
+/// ([`count`]).
 pub fn step(arm: &Arm, key: &str) -> Option<f64> {
     let value = match set(arm, key) {
         Some(text) => number(text.trim_start_matches('[').split([',', ']']).next()?)?,
         None => of_case(arm, key)?,
     };
-    let counts = counts_cells(key);
-    (value > 0.0 && f64::is_finite(value)).then(|| if counts { 1.0 / value } else { value })
+    let is_count = count(key).is_some();
+    (value > 0.0 && f64::is_finite(value)).then(|| if is_count { 1.0 / value } else { value })
 }
 
 /// The number of an arm for a key, of any sign: the value it sets, or that of its case. Of arrays
 /// only numbers of cells are numbers, 1/n of the first direction.
 pub fn scalar(arm: &Arm, key: &str) -> Option<f64> {
-    if counts_cells(key) {
+    if count(key).is_some() {
         return step(arm, key);
     }
     let value = set(arm, key).map_or_else(|| of_case(arm, key), number)?;
     value.is_finite().then_some(value)
 }
 
-fn counts_cells(key: &str) -> bool {
-    key.ends_with("cells") || key == "refine"
+/// What a key counts, if a mesh becomes finer as it grows: cells, layers of cells, or refinements.
+pub fn count(key: &str) -> Option<&str> {
+    let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
+    ["cells", "layers", "refine"].contains(&last).then_some(last)
 }
 
 /// Value that an arm sets for a key; the last one counts.

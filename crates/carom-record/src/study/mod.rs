@@ -51,7 +51,7 @@ use std::path::{Path, PathBuf};
 
 use crate::metrics::Metric;
 use crate::{Expectation, RecordError, Run, Status, Warning};
-pub use arm::{Arm, sets_step, step};
+pub use arm::{Arm, count, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
 pub use claim::{Claim, Comparison, Confirmed, Verdict};

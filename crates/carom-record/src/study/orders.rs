@@ -4,6 +4,9 @@
 //! of a number   p from f₁ − f₂ and f₂ − f₃ of the three finest steps; with an exact value or a reference, from the errors of the two finest
 //! of a column   the same with e_k = ‖c_k − c_{k+1}‖ (rms over the rows whose times all three recorded), or e_k = ‖c_k − reference‖
 //! ```
+//!
+//! A reference that differs from the arms only in its step h_r has an error of its own, C h_rᵖ: then
+//! p is that of e₁/e₂ = (h₁ᵖ − h_rᵖ)/(h₂ᵖ − h_rᵖ).
 
 use std::collections::BTreeMap;
 
@@ -22,7 +25,7 @@ pub struct Refinement {
     pub common: String,
     /// Numbers of the arms.
     pub arms: Vec<usize>,
-    /// Their steps: the value of the key, or 1/value where the key counts cells or refines them.
+    /// Their steps: the value of the key, or 1/value of a count.
     pub steps: Vec<f64>,
 }
 
@@ -63,13 +66,7 @@ fn groups(
         else {
             continue;
         };
-        let others = arm
-            .sets
-            .iter()
-            .filter(|s| s.split('=').next().is_none_or(|k| k.trim() != key))
-            .map(String::as_str);
-        let case = arm.case_path.as_deref().into_iter();
-        let common = name.map_or_else(|| case.chain(others).collect::<Vec<_>>().join(", "), str::to_owned);
+        let common = name.map_or_else(|| others(arm, key).collect::<Vec<_>>().join(", "), str::to_owned);
         match groups.iter_mut().find(|g| g.common == common) {
             Some(group) => {
                 let at = group.steps.partition_point(|s| *s > step);
@@ -81,6 +78,32 @@ fn groups(
     }
     groups.retain(|g| g.arms.len() > 1);
     groups
+}
+
+/// The case of an arm, if it is not that of the study, and its changes of other keys.
+fn others<'a>(arm: &'a Arm, key: &str) -> impl Iterator<Item = &'a str> {
+    let is_other = move |set: &&String| set.split('=').next().is_none_or(|k| k.trim() != key);
+    let sets = arm.sets.iter().filter(is_other).map(String::as_str);
+    arm.case_path.as_deref().into_iter().chain(sets)
+}
+
+/// Order from the errors of the two finest arms with respect to a reference, which may be a third
+/// one with a shorter step.
+fn against_reference(
+    order: &OrderOf,
+    manifest: &StudyManifest,
+    reference: Option<&str>,
+    [(h1, two), (h2, three)]: [(f64, usize); 2],
+    errors: [f64; 2],
+) -> Result<f64, Reason> {
+    let key = order.against.as_str();
+    let arms = &manifest.arms;
+    let alike = |arm: &&Arm| [two, three].iter().all(|i| others(arm, key).eq(others(&arms[*i], key)));
+    let reference = arms.iter().find(|arm| Some(arm.name.as_str()) == reference).filter(alike);
+    match reference.and_then(|arm| step(arm, key)) {
+        Some(own) => from_differences([h1, h2, own], [errors[0] - errors[1], errors[1]]),
+        None => from_errors([h1, h2], errors),
+    }
 }
 
 /// The quantity of an order.
@@ -197,18 +220,19 @@ fn observed(
         }
         Ok(([group.steps[n - 3], h1, h2], name(&group.arms[n - 3])))
     };
+    let with_reference =
+        |errors: [f64; 2]| against_reference(order, manifest, reference, [(h1, *two), (h2, *three)], errors);
     match of(order)? {
         Of::Number(question) => {
             let value = |arm: &str| question.of_arm(arm).answer(records, window);
-            let exact = match (order.exact, reference) {
-                (Some(exact), _) => Some(exact),
-                (None, Some(arm)) => Some(value(arm)?),
-                (None, None) => None,
-            };
             let second = value(name(two))?;
             let last = value(name(three))?;
-            if let Some(exact) = exact {
+            if let Some(exact) = order.exact {
                 return from_errors([h1, h2], [second - exact, last - exact]);
+            }
+            if let Some(arm) = reference {
+                let close = value(arm)?;
+                return with_reference([second - close, last - close]);
             }
             let (steps, first) = triple()?;
             from_differences(steps, [value(first)? - second, second - last])
@@ -229,7 +253,7 @@ fn observed(
                 |a: &[f64], b: &[f64]| norm.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
             if let Some(arm) = reference {
                 let (_, c) = common(&[name(two), name(three), arm])?;
-                return from_errors([h1, h2], [apart(&c[0], &c[2]), apart(&c[1], &c[2])]);
+                return with_reference([apart(&c[0], &c[2]), apart(&c[1], &c[2])]);
             }
             let (steps, first) = triple()?;
             let (_, c) = common(&[first, name(two), name(three)])?;

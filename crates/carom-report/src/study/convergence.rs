@@ -4,7 +4,7 @@
 
 use carom_record::Reason;
 use carom_record::order::{self, MARGIN};
-use carom_record::study::{Refinement, Study, numeric_keys};
+use carom_record::study::{Refinement, Study, count, numeric_keys};
 use maud::{Markup, html};
 
 use super::settings::own_settings;
@@ -47,8 +47,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
         details {
             summary {
                 "Refinement of " code { (key) }
-                @if key.ends_with("cells") { " (step: 1/cells)" }
-                @if key == "refine" { " (step: 1/refine)" }
+                @if let Some(counted) = count(key) { " (step: 1/" (counted) ")" }
                 @if !common.is_empty() { ", " code { (common) } }
             }
             table.metrics {

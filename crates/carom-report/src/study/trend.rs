@@ -3,7 +3,7 @@
 //! factor of three are fitted as a power. Arms that failed or created energy are left out.
 
 use carom_record::metrics::Metric;
-use carom_record::study::{Refinement, Study, varied_keys};
+use carom_record::study::{Refinement, Study, count, varied_keys};
 use maud::{Markup, html};
 
 use super::collected::{common_time, time_unit};
@@ -156,12 +156,11 @@ fn unit_of_key<'a>(study: &'a Study, key: &str) -> &'a str {
     if TIMES.contains(&key) { time_unit(study) } else { "" }
 }
 
-/// The label of a key with its unit: its last part; `1/cells` where its values count cells.
+/// The label of a key with its unit: its last part, and its inverse for a count.
 fn axis(study: &Study, key: &str) -> String {
     let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
     match last {
-        "cells" => "1/cells".to_owned(),
-        "refine" => "1/refine".to_owned(),
+        _ if count(key).is_some() => format!("1/{last}"),
         _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
         "mu" => "μ".to_owned(),
         "rho_inf" => "ρ_{∞}".to_owned(),

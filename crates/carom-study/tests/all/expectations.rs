@@ -170,6 +170,35 @@ value = 2
 tolerance = 0.1
 "#);
     assert!(study.expectations[0].pass, "{:?}", study.expectations);
+
+    // The error of a reference at half the finest step is half of that arm's: it counts.
+    let study = run(r#"
+case = "fixed.toml"
+reference = "half"
+set = { "time.scheme" = { kind = "newmark", beta = 0.3025, gamma = 0.6 } }
+[[arm]]
+name = "half"
+set = { "time.step" = 5e-4 }
+[[arm]]
+name = "once"
+set = { "time.step" = 1e-3 }
+[[arm]]
+name = "twice"
+set = { "time.step" = 2e-3 }
+[[expect]]
+what = "order"
+of = "A.ux"
+against = "time.step"
+value = 1
+tolerance = 0.1
+[[expect]]
+what = "order"
+of = "last A.vx"
+against = "time.step"
+value = 1
+tolerance = 0.15
+"#);
+    assert!(study.expectations.iter().all(|e| e.pass), "{:?}", study.expectations);
 }
 
 /// With respect to the exact motion of the oscillator.

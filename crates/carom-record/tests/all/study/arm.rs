@@ -1,7 +1,7 @@
 //! An arm of a study: one variant that is simulated, as stored in the manifest.
 
 use carom_record::study::arm::scalar;
-use carom_record::study::{Arm, sets_step};
+use carom_record::study::{Arm, count, sets_step};
 
 #[test]
 fn only_the_step_is_the_step() {
@@ -23,4 +23,9 @@ fn numbers_have_any_sign_and_are_no_arrays() {
     assert_eq!(scalar(&arm("a.v=inf"), "a.v"), None);
     assert_eq!(scalar(&arm("a.mesh.cells=[8, 4]"), "a.mesh.cells"), Some(0.125));
     assert_eq!(scalar(&arm("refine=4"), "refine"), Some(0.25));
+    assert_eq!(scalar(&arm("a.mesh.layers=4"), "a.mesh.layers"), Some(0.25));
+    assert_eq!(
+        [count("a.mesh.layers"), count("a.mesh.size"), count("refine")],
+        [Some("layers"), None, Some("refine")]
+    );
 }
