@@ -4,8 +4,9 @@
 //! M a₀ + Gᵀλ₀ = f_ext − f_int,   λ₀ ≤ 0,  g̈₀ ≥ 0,  λ₀ g̈₀ = 0,   g̈₀ = G a₀ + v₀·∇²g·v₀   at t = 0
 //! ```
 //!
-//! Contacts active at the end of the other run remain active, but do not pull (`persistency.rs`);
-//! in the reference configuration there are none (λ₀ = 0). A moving support has its own v₀, a₀ and
+//! Contacts active at the end of the other run remain active, but do not pull (`persistency.rs`), and
+//! stick or slip as in its last step: velocities at the end of a step ring from node to node. In the
+//! reference configuration there are none (λ₀ = 0). A moving support has its own v₀, a₀ and
 //! must start at the position of its body. Schemes whose contact forces are impulses carry the
 //! acceleration of all other forces, M a₀ = f_ext − f_int. Without inertia v₀ and a₀ are zero, and
 //! the first load step finds the equilibrium.
@@ -14,7 +15,7 @@ use std::sync::Arc;
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Pair, Point, Rows};
+use carom_contact::{FrictionState, Pair, Point, Rows};
 use carom_solid::Configuration;
 
 use crate::ledger::{book_contact_forces, book_kinetic};
@@ -34,6 +35,9 @@ pub struct InitialState {
     pub v: Vec<f64>,
     /// Pairs of each contact.
     pub pairs: Vec<Vec<Pair>>,
+    /// Which pairs stuck in the step before, and in which direction others slipped, by contact and
+    /// pair; for pairs that are not listed the velocities decide.
+    pub slid: BTreeMap<(usize, usize), FrictionState>,
     /// Memory of the materials of all bodies; empty if there is none.
     pub memory: Vec<f64>,
 }
@@ -66,10 +70,11 @@ pub fn start(
     let dofs = model.dofs();
     let has_inertia = inertia != Inertia::None;
     let contacts = model.contacts.len();
-    let InitialState { y, v, mut pairs, memory } = before.unwrap_or_else(|| InitialState {
+    let InitialState { y, v, mut pairs, slid, memory } = before.unwrap_or_else(|| InitialState {
         y: model.initial_position.clone(),
         v: model.initial_velocity.clone(),
         pairs: vec![Vec::new(); contacts],
+        slid: BTreeMap::new(),
         memory: Vec::new(),
     });
     pairs.iter_mut().flatten().for_each(|pair| pair.rests = pair.active);
@@ -116,10 +121,10 @@ pub fn start(
     state.ledger.strain += state.ledger.springs;
     match inertia {
         Inertia::None => {}
-        Inertia::Constrained => accelerate(model, &mut state, &gaps, system)?,
+        Inertia::Constrained => accelerate(model, &mut state, &gaps, &slid, system)?,
         Inertia::Free => {
             let pairs = std::mem::replace(&mut state.pairs, vec![Vec::new(); contacts]);
-            accelerate(model, &mut state, &gaps, system)?;
+            accelerate(model, &mut state, &gaps, &slid, system)?;
             state.pairs = pairs;
         }
     }
@@ -159,12 +164,18 @@ pub fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
 }
 
 /// Computes accelerations, and multipliers of active constraints.
-fn accelerate(model: &Model, state: &mut State, gaps: &[Rows], system: &mut System) -> Result<(), Rejected> {
+fn accelerate(
+    model: &Model,
+    state: &mut State,
+    gaps: &[Rows],
+    slid: &BTreeMap<(usize, usize), FrictionState>,
+    system: &mut System,
+) -> Result<(), Rejected> {
     // A spring has the force of its gap. A row without mass does not determine an acceleration: its
     // contact keeps its force.
     let asks = |&(k, p): &(usize, usize)| {
         let has_mass = |n: &usize| !model.massless[n * model.dimension];
         model.contacts[k].interface.is_constraint() && gaps[k].row(p).nodes.iter().any(has_mass)
     };
-    persistency::accelerate(model, state, gaps, asks, &BTreeMap::new(), system)
+    persistency::accelerate(model, state, gaps, asks, slid, system)
 }

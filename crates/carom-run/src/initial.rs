@@ -4,6 +4,8 @@
 //! The meshes are rebuilt from the resolved case of that run and compared node by node: names alone
 //! would not detect a changed mesh.
 
+use std::collections::BTreeMap;
+
 use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model, Tie, past_of};
 use carom_mechanics::{Grid, InitialState, State};
@@ -33,7 +35,13 @@ pub(crate) fn given(motion: &Manufactured, model: &Model) -> Result<InitialState
         y.extend(position);
         v.extend(velocity);
     }
-    Ok(InitialState { y, v, pairs: vec![Vec::new(); model.contacts.len()], memory: Vec::new() })
+    Ok(InitialState {
+        y,
+        v,
+        pairs: vec![Vec::new(); model.contacts.len()],
+        slid: BTreeMap::new(),
+        memory: Vec::new(),
+    })
 }
 
 /// Reads the end of the run from which a case starts.
@@ -80,6 +88,7 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         y: model.reference.clone(),
         v: vec![0.0; model.dofs()],
         pairs: Vec::new(),
+        slid: BTreeMap::new(),
         memory: remembered(&old, &state, model)?,
     };
     let mut meshes = Vec::new();
@@ -142,12 +151,17 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         }
     }
     carry(model, &mut before, &directory.to_string())?;
-    for contact in &case.contacts {
+    for (own, contact) in case.contacts.iter().enumerate() {
         // Pairs of springs are nearly always dependent as constraints; those that touch are found
         // anew.
         let key = |c: &ContactSpec| (c.name.clone(), c.secondary.clone(), c.primary.clone(), c.enforcement);
         let same = old.contacts.iter().position(|c| key(c) == key(contact));
-        before.pairs.push(same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default());
+        let pairs = same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default();
+        if same.is_some_and(|k| old.contacts[k].friction.exists()) {
+            let rubs = pairs.iter().enumerate().filter(|(_, pair)| pair.active);
+            before.slid.extend(rubs.map(|(p, pair)| ((own, p), pair.tangential.friction_state)));
+        }
+        before.pairs.push(pairs);
     }
     Ok(before)
 }

@@ -19,7 +19,7 @@
 //! gravity do not act. The run starts from the positions found, with the velocities of the case,
 //! and the energy that the bodies then store is in its first row.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::{
     BodySpec, Case, ContactLaw, FormulaSpec, FrictionSpec, Law, MassKind, ObstacleMotion, Overlap,
@@ -210,6 +210,7 @@ pub(crate) fn relaxed(
         y: start.initial_position.clone(),
         v: rest,
         pairs: closed(&start),
+        slid: BTreeMap::new(),
         memory: Vec::new(),
     };
     let mut proximal = Proximal {
@@ -247,6 +248,7 @@ pub(crate) fn relaxed(
         y,
         v: model.initial_velocity.clone(),
         pairs: before.pairs,
+        slid: BTreeMap::new(),
         memory: before.memory,
     }))
 }
@@ -358,7 +360,8 @@ impl Proximal {
             let changes = (strain - old).abs() > SETTLED * strain.abs() + self.floor;
             if !changes || simulation.finished() {
                 let memory = state.materials.past(0.0).memory.to_vec();
-                let end = InitialState { y: state.y, v: rest, pairs: state.pairs, memory };
+                let slid = BTreeMap::new();
+                let end = InitialState { y: state.y, v: rest, pairs: state.pairs, slid, memory };
                 return Ok(Reached { end, changes: changes.then_some([old, strain]) });
             }
             (state.v, state.a) = (rest.clone(), rest.clone());

@@ -1,5 +1,7 @@
 //! The start of a run with closed contacts: which pairs press, and which accelerate apart.
 
+use std::collections::BTreeMap;
+
 use carom_contact::{Pairing, Rows, length};
 use carom_mechanics::model::{Contact, Friction, Model};
 use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Tangent, each_slip};
@@ -45,7 +47,13 @@ fn started(model: Model) -> Simulation {
         pairing.pairs
     };
     let pairs = model.contacts.iter().map(closed).collect();
-    let before = InitialState { y: y.clone(), v: vec![0.0; model.dofs()], pairs, memory: Vec::new() };
+    let before = InitialState {
+        y: y.clone(),
+        v: vec![0.0; model.dofs()],
+        pairs,
+        slid: BTreeMap::new(),
+        memory: Vec::new(),
+    };
     let settings = Settings {
         tolerance: 1e-9,
         max_iterations: 20,

@@ -286,6 +286,63 @@ tolerance = 1e-14
     }
 }
 
+/// A block that is dragged over another one and goes on where the run ended: velocities at the end
+/// of a step ring from node to node, and do not decide which nodes stick. The run of both parts is
+/// the reference.
+#[test]
+fn a_motion_with_friction_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |start: f64, end: f64, initial: &str| {
+        let time = format!("(t + {start})");
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "metal", law = "neo-hookean", density = 1.0, young = 500.0, poisson = 0.3 }}]
+[[body]]
+name = "slider"
+material = "metal"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [-0.3, 0.0], max = [0.3, 0.5], cells = [3, 3] }}
+[[body]]
+name = "bed"
+material = "metal"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [-1.0, -0.5], max = [1.0, 0.0], cells = [10, 2] }}
+[[support]]
+name = "ground"
+on = ["bed.bottom"]
+fix = ["x", "y"]
+[[load]]
+name = "drag"
+on = ["slider.top"]
+traction = ["4*sin(10*{time})", "-8*min(1, {time}/0.05)"]
+[[contact]]
+name = "face"
+secondary = "slider.bottom"
+primary = "bed.top"
+mu = 0.3
+[time]
+end = {end}
+step = 2e-3
+scheme = {{ kind = "newmark", beta = 0.25, gamma = 0.5 }}
+energy_guard = false
+{initial}
+"#
+        )
+    };
+    let first = text(0.0, 0.1, "");
+    let second = text(0.1, 0.06, &initial_state(&first, &folder.path().join("first")));
+    let stopped = finish(simulation(&first, &[""; 0]));
+    let started = simulation(&second, &[""; 0]);
+    let [then, now] = [&stopped, &started].map(|run| run.state().contact_forces[0]);
+    assert!((then[0] - now[0]).abs() < 1e-3 * then[0].abs(), "{then:?} {now:?}");
+    let whole = finish(simulation(&text(0.0, 0.16, ""), &[""; 0]));
+    let both = finish(started);
+    let [reference, resumed] = [&whole, &both].map(|run| &run.state().y);
+    let apart = reference.iter().zip(resumed).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-7, "{apart:e}");
+}
+
 /// A state of another model is refused with the difference, wherever it is given.
 #[test]
 fn states_of_other_models() {
