@@ -4,9 +4,9 @@
 //! M a₀ + Gᵀλ₀ = f_ext − f_int,   λ₀ ≤ 0,  g̈₀ ≥ 0,  λ₀ g̈₀ = 0,   g̈₀ = G a₀ + v₀·∇²g·v₀   at t = 0
 //! ```
 //!
-//! Contacts active at the end of the other run remain active, but do not pull (`persistency.rs`), and
-//! stick or slip as in its last step: velocities at the end of a step ring from node to node. In the
-//! reference configuration there are none (λ₀ = 0). A moving support has its own v₀, a₀ and
+//! Contacts active at the end of the other run remain active, but do not pull (`persistency.rs`),
+//! and stick or slip as in its last step: velocities at the end of a step ring from node to node.
+//! In the reference configuration there are none (λ₀ = 0). A moving support has its own v₀, a₀ and
 //! must start at the position of its body. Schemes whose contact forces are impulses carry the
 //! acceleration of all other forces, M a₀ = f_ext − f_int. Without inertia v₀ and a₀ are zero, and
 //! the first load step finds the equilibrium.

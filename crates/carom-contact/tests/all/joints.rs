@@ -111,8 +111,8 @@ fn the_normal_at_a_ridge_is_that_of_symmetry() {
 /// pairs stay as they are.
 #[test]
 fn a_joint_that_cannot_be_measured_adds_no_row() {
-    // The node is below the end of a straight facet, and twice as deep as the radius of curvature of
-    // the other one.
+    // The node is below the end of a straight facet, and twice as deep as the radius of curvature
+    // of the other one.
     let y = [[0.0, -5.0], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0], [0.5, 0.0], [-0.5, 0.05]];
     let surface = Surface::new(FacetShape::L3, &[vec![1, 2, 4], vec![2, 3, 5]], &[1.0; 2]);
     let contact = NodeToFacet::new(vec![0], surface, Detection::ClosestPoint);

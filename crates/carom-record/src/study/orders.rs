@@ -5,8 +5,8 @@
 //! of a column   the same with e_k = ‖c_k − c_{k+1}‖ (rms over the rows whose times all three recorded), or e_k = ‖c_k − reference‖
 //! ```
 //!
-//! A reference that differs from the arms only in its step h_r has an error of its own, C h_rᵖ: then
-//! p is that of e₁/e₂ = (h₁ᵖ − h_rᵖ)/(h₂ᵖ − h_rᵖ).
+//! A reference that differs from the arms only in its step h_r has an error of its own, C h_rᵖ:
+//! then p is that of e₁/e₂ = (h₁ᵖ − h_rᵖ)/(h₂ᵖ − h_rᵖ).
 
 use std::collections::BTreeMap;
 
