@@ -39,7 +39,7 @@ impl Block {
 
 /// Calls `compute(first, numbers, values)` for consecutive cells on all threads, `count` in all,
 /// and `add(first, numbers)` for such blocks in the order of the cells. Returns the sum of the
-/// values in that order.
+/// values in that order, and the smallest number that `compute` returned, if it always did.
 ///
 /// # Errors
 /// The first inverted cell.
@@ -47,10 +47,12 @@ pub(crate) fn for_each(
     threads: &Threads,
     count: usize,
     numbers: usize,
-    compute: impl Fn(usize, &mut [f64], &mut [f64]) -> Result<(), Inverted> + Sync,
+    compute: impl Fn(usize, &mut [f64], &mut [f64]) -> Result<Option<f64>, Inverted> + Sync,
     mut add: impl FnMut(usize, &[f64]) + Send,
-) -> Result<f64, Inverted> {
+) -> Result<(f64, Option<f64>), Inverted> {
     let mut sum = 0.0;
+    let mut least = Some(f64::INFINITY);
+    let smaller = |one: Option<f64>, other: Option<f64>| Some(one?.min(other?));
     let mut add_all = |block: &Block| {
         block.values.iter().for_each(|value| sum += value);
         add(block.first, &block.locals);
@@ -67,12 +69,12 @@ pub(crate) fn for_each(
     for first in (0..count).step_by(size) {
         next.resize(first, size.min(count - first), numbers);
         if is_serial {
-            compute(first, &mut next.locals, &mut next.values)?;
+            least = smaller(least, compute(first, &mut next.locals, &mut next.values)?);
             add_all(&next);
             continue;
         }
         let Block { locals, values, .. } = &mut next;
-        let mut results = vec![Ok(()); values.len().div_ceil(share)];
+        let mut results = vec![Ok(None); values.len().div_ceil(share)];
         let compute_all = || {
             let shares = locals.chunks_mut(share * numbers).zip(values.chunks_mut(share)).zip(&mut results);
             threads.for_each(shares, |k, ((locals, values), result)| {
@@ -80,11 +82,13 @@ pub(crate) fn for_each(
             });
         };
         threads.join(|| add_all(&done), compute_all);
-        results.into_iter().collect::<Result<(), Inverted>>()?;
+        for result in results {
+            least = smaller(least, result?);
+        }
         std::mem::swap(&mut done, &mut next);
     }
     add_all(&done);
-    Ok(sum)
+    Ok((sum, least))
 }
 
 /// The addition of [`for_each`] by one for each cell.
@@ -101,11 +105,11 @@ pub(crate) fn added_one_by_one(
 pub(crate) fn one_by_one(
     numbers: usize,
     compute: impl Fn(usize, &mut [f64]) -> Result<f64, Inverted> + Sync,
-) -> impl Fn(usize, &mut [f64], &mut [f64]) -> Result<(), Inverted> + Sync {
+) -> impl Fn(usize, &mut [f64], &mut [f64]) -> Result<Option<f64>, Inverted> + Sync {
     move |first, locals, values| {
         for (k, (local, value)) in locals.chunks_exact_mut(numbers).zip(values).enumerate() {
             *value = compute(first + k, local)?;
         }
-        Ok(())
+        Ok(None)
     }
 }

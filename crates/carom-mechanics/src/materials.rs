@@ -1,4 +1,5 @@
-//! What the materials of bodies remember, and the energy that they store and dissipate.
+//! What the materials of bodies remember, the energy that they store and dissipate, and the
+//! smallest J.
 //!
 //! The memory of the state before a step stays as it is while trials of the step compute theirs, so
 //! that a rejected step leaves nothing behind. What each body dissipates is the sum of what its law
@@ -22,6 +23,9 @@ pub struct Materials {
     /// Energy that each body dissipates in the step that led to this memory, until it is booked.
     #[serde(skip)]
     pub(crate) lost: Vec<f64>,
+    /// Smallest J over the quadrature points of all bodies, if the pass that computed their forces
+    /// knows it.
+    pub(crate) min_det_f: Option<f64>,
 }
 
 impl Materials {
@@ -61,6 +65,7 @@ impl Materials {
         self.stored.clone_from(&others.stored);
         self.dissipated.clone_from(&others.dissipated);
         self.lost.clone_from(&others.lost);
+        self.min_det_f = others.min_det_f;
     }
 
     /// Takes over what a trial stores, remembers and dissipates.
@@ -68,5 +73,6 @@ impl Materials {
         self.memory.clone_from(&trial.memory);
         self.stored.clone_from(&trial.stored);
         self.lost.clone_from(&trial.lost);
+        self.min_det_f = trial.min_det_f;
     }
 }

@@ -51,6 +51,7 @@ impl State {
             .internal_force(&Configuration { before: None, y: &state.y, past }, &mut internal, &mut reached)
             .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
         state.materials.stored = reached.stored;
+        state.materials.min_det_f = reached.min_det_f;
         let springs = springs(model, &state)?;
         state.ledger = Ledger {
             strain: strain + springs,

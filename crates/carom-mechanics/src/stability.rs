@@ -137,7 +137,7 @@ fn largest_of_cells(model: &Model) -> Option<f64> {
                 });
                 *square = scaled.sum::<f64>().sqrt();
             }
-            Ok(())
+            Ok(None)
         };
         let add = |_: usize, squares: &[f64]| largest = squares.iter().fold(largest, |most, x| most.max(*x));
         cells::for_each(&model.threads, mesh.cell_count(), 1, compute, add).ok()?;

@@ -303,6 +303,13 @@ impl State {
         all
     }
 
+    /// Smallest J over all quadrature points: known from the pass that computed the forces, or
+    /// found by one of its own.
+    pub fn min_det_f(&self, model: &Model) -> f64 {
+        let found = || model.min_det_f(&self.y, self.materials.past(0.0).memory);
+        self.materials.min_det_f.unwrap_or_else(found)
+    }
+
     /// Whether every vector, and node and facet of every pair, exist in this model, and all
     /// positions, velocities and accelerations are finite.
     ///

@@ -129,11 +129,19 @@ pub trait Geometry: Send + Sync {
 ///
 /// Units follow the case: forces per unit thickness × thickness.
 pub trait Body: Geometry {
-    /// Computes consecutive cells from `first` on, as many as `out` has energies.
+    /// Computes consecutive cells from `first` on, as many as `out` has energies. Returns the
+    /// smallest J over their quadrature points where it comes with the forces: of cells with
+    /// constant strain.
     ///
     /// # Errors
     /// The first cell that is inverted.
-    fn respond(&self, first: usize, at: &Configuration, ask: Ask, out: Response) -> Result<(), Inverted>;
+    fn respond(
+        &self,
+        first: usize,
+        at: &Configuration,
+        ask: Ask,
+        out: Response,
+    ) -> Result<Option<f64>, Inverted>;
 
     /// Count of numbers that the materials of a cell remember; all are zero at the start of a run.
     fn memory(&self) -> usize;

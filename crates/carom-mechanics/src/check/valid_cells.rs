@@ -103,7 +103,9 @@ fn check_paths(model: &Model, part: &BodyInstance, before: &[f64], now: &[f64]) 
     let body = &part.body;
     let d = part.body.mesh().dimension();
     let mut left = Vec::new();
-    let compute = |first: usize, margins: &mut [f64], _: &mut [f64]| body.cell_margins(first, now, margins);
+    let compute = |first: usize, margins: &mut [f64], _: &mut [f64]| {
+        body.cell_margins(first, now, margins).map(|()| None)
+    };
     let add = |cell: usize, margin: &[f64]| {
         let nodes = body.mesh().cell(cell);
         let moved = |node: usize, i: usize| now[d * node + i] - before[d * node + i];
@@ -133,8 +135,9 @@ fn check_paths(model: &Model, part: &BodyInstance, before: &[f64], now: &[f64]) 
 /// The smallest margin of a body's cells.
 fn margin(model: &Model, part: &BodyInstance, y: &[f64]) -> Result<f64, Rejected> {
     let mut least = f64::INFINITY;
-    let compute =
-        |first: usize, margins: &mut [f64], _: &mut [f64]| part.body.cell_margins(first, y, margins);
+    let compute = |first: usize, margins: &mut [f64], _: &mut [f64]| {
+        part.body.cell_margins(first, y, margins).map(|()| None)
+    };
     let add = |_: usize, margins: &[f64]| least = margins.iter().fold(least, |least, m| least.min(*m));
     cells::for_each(&model.threads, part.body.mesh().cell_count(), 1, compute, add)
         .map_err(|inverted| Rejected::Inverted { body: part.name.clone(), inverted })?;

@@ -187,8 +187,11 @@ impl Model {
         trial: &mut Materials,
     ) -> Result<f64, (String, Inverted)> {
         if !self.remembers() {
-            return self.add_cells(at, Ask::Force, force);
+            let (strain, least) = self.add_cells(at, Ask::Force, force)?;
+            trial.min_det_f = least;
+            return Ok(strain);
         }
+        trial.min_det_f = None;
         force.fill(0.0);
         trial.resize(self.parts.len(), self.memory());
         let memory = Arc::make_mut(&mut trial.memory);
@@ -218,10 +221,17 @@ impl Model {
         self.add_cells(at, Ask::Product(change), product).map(|_| ())
     }
 
-    /// Overwrites `sum` with the vectors that are asked of all cells.
-    fn add_cells(&self, at: &Configuration, ask: Ask, sum: &mut [f64]) -> Result<f64, (String, Inverted)> {
+    /// Overwrites `sum` with the vectors that are asked of all cells. Returns what they store, and
+    /// the smallest J where all cells know theirs.
+    fn add_cells(
+        &self,
+        at: &Configuration,
+        ask: Ask,
+        sum: &mut [f64],
+    ) -> Result<(f64, Option<f64>), (String, Inverted)> {
         sum.fill(0.0);
         let mut strain = 0.0;
+        let mut least = Some(f64::INFINITY);
         for (part, at) in self.configurations(at) {
             let mesh = part.body.mesh();
             let own = part.of_mut(sum);
@@ -238,10 +248,13 @@ impl Model {
                     Response { numbers, energies, memory: &mut [], dissipated: &mut [] },
                 )
             };
-            strain += cells::for_each(&self.threads, mesh.cell_count(), mesh.element.dofs(), compute, add)
-                .map_err(|inverted| (part.name.clone(), inverted))?;
+            let (stored, found) =
+                cells::for_each(&self.threads, mesh.cell_count(), mesh.element.dofs(), compute, add)
+                    .map_err(|inverted| (part.name.clone(), inverted))?;
+            strain += stored;
+            least = least.zip(found).map(|(least, found)| least.min(found));
         }
-        Ok(strain)
+        Ok((strain, least))
     }
 
     /// Adds the forces of a body and what it dissipates, and overwrites its memory; returns the
@@ -273,6 +286,7 @@ impl Model {
             *lost += local[dofs + size];
         });
         cells::for_each(&self.threads, mesh.cell_count(), count, compute, add)
+            .map(|(stored, _)| stored)
             .map_err(|inverted| (part.name.clone(), inverted))
     }
 

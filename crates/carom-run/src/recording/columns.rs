@@ -78,7 +78,7 @@ pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<
     row.extend([since.activations, since.releases, since.newton, since.rejected].map(f64::from));
     row.extend(simulation.has_fallback().then_some(f64::from(since.fallbacks)));
     row.extend([since.penetration.all, since.penetration.constrained]);
-    row.push(model.min_det_f(&state.y, state.materials.past(0.0).memory));
+    row.push(state.min_det_f(model));
     if rubs(model) {
         let sticks = |pair: &&Pair| pair.active && pair.tangential.friction_state == FrictionState::Stick;
         let rubbing =

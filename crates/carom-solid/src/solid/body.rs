@@ -111,13 +111,19 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Geometry for Solid<D, N, S>
 }
 
 impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
-    fn respond(&self, first: usize, at: &Configuration, ask: Ask, out: Response) -> Result<(), Inverted> {
+    fn respond(
+        &self,
+        first: usize,
+        at: &Configuration,
+        ask: Ask,
+        out: Response,
+    ) -> Result<Option<f64>, Inverted> {
         let Response { numbers, energies, memory, dissipated } = out;
         if const { Self::HAS_CONSTANT_STRAIN }
             && self.memory == 0
             && let (Ask::Force, None) = (ask, at.before)
         {
-            return self.constant_forces(first, at.y, numbers, energies);
+            return self.constant_forces(first, at.y, numbers, energies).map(Some);
         }
         let width = numbers.len() / energies.len().max(1);
         let mut memories = memory.chunks_exact_mut(self.memory.max(1));
@@ -130,7 +136,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
                 *dissipated = response.dissipated;
             }
         }
-        Ok(())
+        Ok(None)
     }
 
     fn memory(&self) -> usize {
@@ -287,7 +293,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     }
 
     /// Smallest J over the quadrature points of a cell.
-    fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64 {
+    pub(super) fn cell_min_det_f(&self, cell: usize, y: &[f64], past: &Past) -> f64 {
         let u = self.displacements(cell, y);
         let law = &self.medium(cell).law;
         let past = past.part(cell, self.memory);

@@ -15,44 +15,48 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
     /// Whether F is constant in every cell.
     pub(super) const HAS_CONSTANT_STRAIN: bool = S::DEGREE == 1 && !S::Domain::TENSOR;
 
-    /// Forces and energies of consecutive cells with constant strain.
+    /// Forces and energies of consecutive cells with constant strain. Returns their smallest J.
     pub(super) fn constant_forces(
         &self,
         first: usize,
         y: &[f64],
         forces: &mut [f64],
         energies: &mut [f64],
-    ) -> Result<(), Inverted> {
+    ) -> Result<f64, Inverted> {
         if !first.is_multiple_of(LANES) {
             return self.one_by_one(first, y, forces, energies);
         }
+        let mut least = f64::INFINITY;
         let blocks = forces.chunks_mut(LANES * N * D).zip(energies.chunks_mut(LANES));
         for (block, (forces, energies)) in blocks.enumerate() {
             let cells = first + block * LANES;
-            let valid = wide(
+            let found = wide(
                 #[inline(always)]
                 || self.forces_of_four(cells, y, forces, energies),
             );
-            if !valid {
-                // One by one, to find it.
-                self.one_by_one(cells, y, forces, energies)?;
-            }
+            least = least.min(match found {
+                Some(det_f) => det_f,
+                // One by one, to find the inverted one.
+                None => self.one_by_one(cells, y, forces, energies)?,
+            });
         }
-        Ok(())
+        Ok(least)
     }
 
-    /// Forces and energies of cells, one after the other.
+    /// Forces and energies of cells, one after the other. Returns their smallest J.
     fn one_by_one(
         &self,
         first: usize,
         y: &[f64],
         forces: &mut [f64],
         energies: &mut [f64],
-    ) -> Result<(), Inverted> {
+    ) -> Result<f64, Inverted> {
+        let mut least = f64::INFINITY;
         for (k, (force, energy)) in forces.chunks_exact_mut(N * D).zip(energies).enumerate() {
             *energy = self.force(first + k, y, force)?;
+            least = least.min(self.cell_min_det_f(first + k, y, &Past::default()));
         }
-        Ok(())
+        Ok(least)
     }
 
     /// [`Body::cell_margins`](crate::Body::cell_margins) of up to four cells with constant strain;
@@ -169,32 +173,43 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
 
     /// Smallest J of consecutive cells, of which the first is that of a packed block.
     pub(super) fn constant_min_det_f(&self, cells: Range<usize>, y: &[f64]) -> f64 {
-        let mut least = [f64::INFINITY; LANES];
-        for first in cells.clone().step_by(LANES) {
+        let of_block = |first: usize| {
             let count = LANES.min(cells.end - first);
             let h = wide(
                 #[inline(always)]
                 || self.gradients_of_four(first, count, y),
             );
-            let region = self.mesh.region(first);
-            let mut ratios = self.media[region].law.volume_ratios(&h);
-            for l in (0..count).filter(|l| self.mesh.region(first + l) != region) {
-                ratios[l] = self.medium(first + l).law.volume_ratio_at(&get(&h, l), &Past::default());
-            }
-            (0..count).for_each(|l| least[l] = least[l].min(ratios[l]));
-        }
-        least.into_iter().fold(f64::INFINITY, f64::min)
+            self.min_det_f_of_four(first, count, &h)
+        };
+        cells.clone().step_by(LANES).map(of_block).fold(f64::INFINITY, f64::min)
     }
 
-    /// Forces and energies of up to four cells, those of a packed block; returns false if one is
-    /// inverted.
+    /// Smallest J of up to four cells.
     #[inline(always)]
-    fn forces_of_four(&self, first: usize, y: &[f64], forces: &mut [f64], energies: &mut [f64]) -> bool {
+    fn min_det_f_of_four(&self, first: usize, count: usize, h: &Mats<D>) -> f64 {
+        let region = self.mesh.region(first);
+        let mut ratios = self.media[region].law.volume_ratios(h);
+        for l in (0..count).filter(|l| self.mesh.region(first + l) != region) {
+            ratios[l] = self.medium(first + l).law.volume_ratio_at(&get(h, l), &Past::default());
+        }
+        ratios[..count].iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Forces and energies of up to four cells, those of a packed block. Returns their smallest J;
+    /// none if one is inverted.
+    #[inline(always)]
+    fn forces_of_four(
+        &self,
+        first: usize,
+        y: &[f64],
+        forces: &mut [f64],
+        energies: &mut [f64],
+    ) -> Option<f64> {
         let count = energies.len();
         let gradients = &self.points[0].gradients;
         let Packed { maps, weights } = &self.packed[first / LANES];
         let h = self.gradients_of_four(first, count, y);
-        let Some((densities, stresses)) = self.stresses_of_four(first, count, &h) else { return false };
+        let (densities, stresses) = self.stresses_of_four(first, count, &h)?;
         let mut pulled = [[[0.0; LANES]; D]; D];
         for i in 0..D {
             for j in 0..D {
@@ -225,6 +240,6 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         for l in 0..count {
             energies[l] = weights[l] * densities[l];
         }
-        true
+        Some(self.min_det_f_of_four(first, count, &h))
     }
 }

@@ -39,7 +39,7 @@ fn cell_forces(
     energies: &mut [f64],
 ) -> Result<(), Inverted> {
     let out = Response { numbers: forces, energies, memory: &mut [], dissipated: &mut [] };
-    body.respond(first, &Configuration::at(y), Ask::Force, out)
+    body.respond(first, &Configuration::at(y), Ask::Force, out).map(|_| ())
 }
 
 fn check(body: &dyn Body, y: &[f64], name: &str) {
