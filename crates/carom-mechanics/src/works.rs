@@ -4,13 +4,19 @@
 //! of both ends     F̄ = (F_s + F_{s+1})/2                              α family, load steps
 //! of means         F̄ = the mean of the velocity update, `Stage::mean`     all others
 //! external         Δy·F̄_ext (beyond the potential) + Δy_moved·R̄
-//! contact          Δy·F̄_cont, of friction with its mean in the balance
+//! contact          Δy·F̄_cont
 //! ```
 //!
 //! The balance of the α family has its forces at 1 − α_f of the step. As a quadrature of ∫F·dy this
 //! lags by ½ − α_f steps, an error of first order for as long as a load varies. The mean of both
 //! ends is of second order. With it the trapezoidal rule dissipates nothing in linear motion, an
 //! obstacle that turns under a body does no work, and works do not depend on the frame.
+//!
+//! Where contact begins, F_{s+1} is an impulse over Δt, of which the mean of both ends takes one
+//! half, as the velocities do, and a projection replaces it by the steady force. Friction with its
+//! mean in the balance, 1 − α_f of F_{s+1}, would count impulses up to twice. Friction in load
+//! steps and that on springs, which have no such impulses, works with its mean in the balance: it
+//! is not positive then where slip begins or ends.
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
@@ -43,8 +49,13 @@ impl Works {
         let mut friction = 0.0;
         let mut contact = at_both_ends(increment, &state.f_contact, &next.f_contact);
         if model.has_friction() {
-            friction = work_of_friction(equations, last);
-            contact += friction - at_both_ends(increment, &friction_forces(state), &next.f_friction);
+            let between = at_both_ends(increment, &friction_forces(state), &next.f_friction);
+            friction = if friction_is_constraint(equations) {
+                between + 0.5 * dot(increment, &turned_friction(last, next))
+            } else {
+                work_of_friction(equations, last)
+            };
+            contact += friction - between;
         }
         let mut external = at_both_ends(increment, &state.f_external, &next.f_external);
         if !equations.motions.is_empty() {
@@ -134,8 +145,13 @@ pub(crate) fn at_both_ends(increment: &[f64], before: &[f64], now: &[f64]) -> f6
     increment.iter().zip(forces).map(|(moved, (before, now))| 0.5 * moved * (before + now)).sum()
 }
 
-/// Work of friction with its mean in the balance of a step. With the mean of both ends it could be
-/// positive where a slip begins or ends.
+/// Whether friction is a constraint of a motion: not in load steps, and not on springs.
+fn friction_is_constraint(equations: &Equations) -> bool {
+    let rubs = equations.model.contacts.iter().filter(|contact| contact.friction.is_some());
+    !equations.stage.is_static() && rubs.into_iter().all(|contact| contact.interface.is_constraint())
+}
+
+/// Work of friction with its mean in the balance of a step.
 fn work_of_friction(equations: &Equations, last: &Evaluation) -> f64 {
     let Equations { model, state, stage, .. } = equations;
     let before = friction_forces(state);

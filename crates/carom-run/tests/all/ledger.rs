@@ -115,10 +115,11 @@ fn has_friction(model: &Model) -> bool {
     model.contacts.iter().any(|contact| contact.friction.is_some())
 }
 
-/// Work of friction, in the forces that follow from the balance, with the mean of both ends, less
-/// that with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
+/// Work of friction on springs, in the forces that follow from the balance, with the mean of both
+/// ends, less that with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
 fn friction_lag(model: &Model, before: &State, now: &State, alpha_f: f64) -> f64 {
-    if !has_friction(model) {
+    let mut rubs = model.contacts.iter().filter(|contact| contact.friction.is_some());
+    if rubs.all(|contact| contact.interface.is_constraint()) {
         return 0.0;
     }
     let moved = sum(&now.y, -1.0, &before.y);
