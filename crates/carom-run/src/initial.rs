@@ -6,13 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use carom_case::{Case, ContactSpec, InitialSpec, Problem, Velocities};
+use carom_case::{Case, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model, Tie, past_of};
 use carom_mechanics::{Grid, InitialState, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 use carom_solid::Mesh;
 
 use crate::build;
+use crate::initial_pairs::{self, Found};
 use crate::saved_state;
 
 /// The initial state of a manufactured motion.
@@ -151,18 +152,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         }
     }
     carry(model, &mut before, &directory.to_string())?;
-    for (own, contact) in case.contacts.iter().enumerate() {
-        // Pairs of springs are nearly always dependent as constraints; those that touch are found
-        // anew.
-        let key = |c: &ContactSpec| (c.name.clone(), c.secondary.clone(), c.primary.clone(), c.enforcement);
-        let same = old.contacts.iter().position(|c| key(c) == key(contact));
-        let pairs = same.and_then(|k| state.pairs.get(k).cloned()).unwrap_or_default();
-        if same.is_some_and(|k| old.contacts[k].friction.exists()) {
-            let rubs = pairs.iter().enumerate().filter(|(_, pair)| pair.active);
-            before.slid.extend(rubs.map(|(p, pair)| ((own, p), pair.tangential.friction_state)));
-        }
-        before.pairs.push(pairs);
-    }
+    let Found { pairs, slid } = initial_pairs::found(case, model, &before.y, &old, &state);
+    (before.pairs, before.slid) = (pairs, slid);
     Ok(before)
 }
 

@@ -343,6 +343,60 @@ energy_guard = false
     assert!(apart < 1e-7, "{apart:e}");
 }
 
+/// A block that a moving plane has pressed stays as it is where a plane that rests there goes on,
+/// whatever the name of the contact; and so it does with an augmented Lagrangian.
+#[test]
+fn a_contact_goes_on_at_another_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |contact: &str, time: &str, initial: &str| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 300.0, poisson = 0.3 }}]
+[[body]]
+name = "block"
+material = "m"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [-0.3, 0.0], max = [0.3, 0.5], cells = [4, 3] }}
+[[support]]
+on = ["block.top"]
+fix = ["x", "y"]
+[[contact]]
+secondary = "block.bottom"
+mu = 0.3
+{contact}
+{time}
+{initial}
+"#
+        )
+    };
+    let plane = |name: &str, at: &str, motion: &str| {
+        format!("name = \"{name}\"\nprimary = {{ plane = {{ point = {at}, normal = [0.0, 1.0] }}{motion} }}")
+    };
+    let press = plane("press", "[0.0, 0.0]", ", motion = { x = \"0.004*t\", y = \"0.02*t\" }");
+    let load = text(&press, &time(1.0, 0.1, r#"{ kind = "static" }"#), "");
+    let initial = initial_state(&load, &folder.path().join("pressed"));
+    let pressed = finish(simulation(&load, &[""; 0]));
+    let force = pressed.state().contact_forces[0];
+    let rests = plane("floor", "[0.5, 0.02]", "");
+    for enforcement in ["multiplier", "augmented"] {
+        for scheme in [
+            r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#,
+            r#"{ kind = "bathe", rho_inf = 0.5 }"#,
+            r#"{ kind = "energy-momentum" }"#,
+        ] {
+            let contact = format!("{rests}\nenforcement = \"{enforcement}\"");
+            let mut run = simulation(&text(&contact, &time(0.1, 0.01, scheme), &initial), &[""; 0]);
+            for _ in 0..5 {
+                let now = run.state().contact_forces[0];
+                let apart = (now[0] - force[0]).hypot(now[1] - force[1]);
+                assert!(apart < 1e-6 * force[1], "{enforcement} {scheme}: {now:?} {force:?}");
+                run.step().unwrap();
+            }
+        }
+    }
+}
+
 /// A state of another model is refused with the difference, wherever it is given.
 #[test]
 fn states_of_other_models() {

@@ -1,0 +1,101 @@
+//! Closed pairs at the start of a run, of the contacts at the end of another one.
+//!
+//! A contact goes on where the other run has one of the same kind on the same sides, whatever its
+//! name and wherever its obstacle stands: one that has moved goes on from another place, and of its
+//! pairs those are closed that touch. Where the other run pressed by springs and this one does not,
+//! or the reverse, or by the other method, nodes that touch are found anew: pairs of springs are
+//! nearly always dependent as constraints.
+
+use std::collections::BTreeMap;
+
+use carom_case::{Case, ContactSpec, PrimarySpec};
+use carom_contact::{FrictionState, Pair, Pairing, Rows};
+use carom_mechanics::State;
+use carom_mechanics::model::{Contact, Model};
+
+/// Gap of nodes that touch, over L.
+const TOUCHES: f64 = 1e-9;
+
+/// Pairs of each contact, and which of them stuck or slipped, by contact and pair.
+pub(crate) struct Found {
+    pub(crate) pairs: Vec<Vec<Pair>>,
+    pub(crate) slid: BTreeMap<(usize, usize), FrictionState>,
+}
+
+/// The pairs of a model at positions `y`, from the other run and its last state.
+pub(crate) fn found(case: &Case, model: &Model, y: &[f64], old: &Case, state: &State) -> Found {
+    let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new() };
+    for (own, (spec, contact)) in case.contacts.iter().zip(&model.contacts).enumerate() {
+        let alike = |other: &&usize| is_alike(&old.contacts[**other], spec);
+        let all: Vec<usize> = (0..old.contacts.len()).collect();
+        let named = all.iter().filter(alike).find(|other| old.contacts[**other].name == spec.name);
+        let Some(&before) = named.or_else(|| all.iter().find(alike)) else {
+            found.pairs.push(Vec::new());
+            continue;
+        };
+        let pressed = state.pairs.get(before).map_or(&[][..], Vec::as_slice);
+        let other = &old.contacts[before];
+        let goes_on =
+            other.method == spec.method && other.enforcement.is_exact() == spec.enforcement.is_exact();
+        let stays = other.primary == spec.primary && other.motion.is_fixed() && spec.motion.is_fixed();
+        let pairs = if goes_on && stays {
+            pressed.to_vec()
+        } else if goes_on {
+            still_closed(model, contact, y, pressed)
+        } else if pressed.iter().any(|pair| pair.active) {
+            touching(model, contact, y)
+        } else {
+            Vec::new()
+        };
+        if goes_on && other.friction.exists() {
+            let rubs = pairs.iter().enumerate().filter(|(_, pair)| pair.active);
+            found.slid.extend(rubs.map(|(p, pair)| ((own, p), pair.tangential.friction_state)));
+        }
+        found.pairs.push(pairs);
+    }
+    found
+}
+
+/// Whether contacts are on the same sides, or on the same side and an obstacle of the same kind.
+fn is_alike(old: &ContactSpec, new: &ContactSpec) -> bool {
+    let primary = match (&old.primary, &new.primary) {
+        (PrimarySpec::Plane { .. }, PrimarySpec::Plane { .. }) => true,
+        (PrimarySpec::Circle { inside, .. }, PrimarySpec::Circle { inside: other, .. })
+        | (PrimarySpec::Cylinder { inside, .. }, PrimarySpec::Cylinder { inside: other, .. }) => {
+            inside == other
+        }
+        (PrimarySpec::Polyline { points, .. }, PrimarySpec::Polyline { points: others, .. }) => {
+            points.len() == others.len()
+        }
+        (old, new) => old == new,
+    };
+    primary && old.secondary == new.secondary
+}
+
+/// The pairs, of which those are open that do not touch any more. The gap of a spring says itself
+/// whether it presses.
+fn still_closed(model: &Model, contact: &Contact, y: &[f64], pairs: &[Pair]) -> Vec<Pair> {
+    let mut rows = Rows::new(model.dimension);
+    let mut pairs = pairs.to_vec();
+    for pair in pairs.iter_mut().filter(|pair| pair.active && contact.interface.is_constraint()) {
+        rows.clear();
+        let is_measured = contact.kinematics.measure(&mut pair.clone(), y, &mut rows).is_ok();
+        if !(is_measured && rows.row(0).gap.abs() <= TOUCHES * model.scale) {
+            *pair = Pair { joint: pair.joint, ..Pair::open(pair.node, pair.facet, pair.xi) };
+        }
+    }
+    pairs
+}
+
+/// The pairs of nodes that touch.
+fn touching(model: &Model, contact: &Contact, y: &[f64]) -> Vec<Pair> {
+    let mut rows = Rows::new(model.dimension);
+    let mut pairing = Pairing::default();
+    contact.kinematics.search(y, y, &mut pairing, &mut Vec::new());
+    for pair in &mut pairing.pairs {
+        rows.clear();
+        let is_measured = contact.kinematics.measure(pair, y, &mut rows).is_ok();
+        pair.active = is_measured && rows.row(0).gap <= TOUCHES * model.scale;
+    }
+    pairing.pairs
+}
