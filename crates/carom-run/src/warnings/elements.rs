@@ -1,11 +1,20 @@
-//! Warnings about elements of degree 1: they lock at nearly constant volume, and T3 in bending.
+//! Warnings about elements of degree 1: they lock at nearly constant volume, and in bending.
 //!
-//! A beam of n square cells across its thickness is too stiff in bending by 3/n², as measured on a
-//! cantilever with L/h = 20 and ν = 0 (n = 2, 4, 8, 16: 75 %, 19 %, 4.7 %, 1.2 %). Length L and
-//! thickness h of a body are the roots of x² − (P/2) x + A = 0, with its area A and its perimeter
-//! P: exact for a rectangle, to first order for a strip or ring that is bent.
+//! A beam of n square cells of two T3 across its thickness is too stiff in bending by 3/n², as
+//! measured on a cantilever with L/h = 20 and ν = 0 (n = 2, 4, 8, 16: 75 %, 19 %, 4.7 %, 1.2 %). Of
+//! n cells Q4 with length a and height b it is too stiff by
+//!
+//! ```text
+//! [(1/(1 − ν) + (a/b)²/2)/(1 + ν) − 1] / n²        in plane stress; in plane strain with ν/(1 − ν)
+//! ```
+//!
+//! because sides that stay straight shear, G (κx)²/2, where the cell is bent by κ, and leave no
+//! curvature across. Boxes of Hex8 are as stiff, and those of Tet4 stiffer. Length L and thickness
+//! h of a body in the plane are the roots of x² − (P/2) x + A = 0, with its area A and its
+//! perimeter P, and numbers of cells along them the same with the counts of cells and of facets:
+//! exact for a rectangle, to first order for a strip or ring that is bent.
 
-use carom_case::{BodySpec, Case, MaterialSpec, Plane, Volumetric};
+use carom_case::{BodySpec, Case, MaterialSpec, MeshSpec, Plane, Volumetric};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_solid::{Element, Facet};
 
@@ -74,20 +83,96 @@ fn plane(element: Element) -> &'static str {
     if element.dimension() == 2 { " in plane strain" } else { "" }
 }
 
-pub(super) fn stiff_bending(_: &Case, model: &Model) -> Vec<Found> {
-    let thin = model.parts.iter().filter(|part| part.body.mesh().element == Element::T3);
-    thin.filter_map(|part| Some(Found::of_body(&part.name, too_stiff(part)?))).collect()
+pub(super) fn stiff_bending(case: &Case, model: &Model) -> Vec<Found> {
+    let too_stiff = |(part, spec): (&BodyInstance, &BodySpec)| {
+        let element = spec.element;
+        let what = match element {
+            Element::T3 => triangles_across(part),
+            Element::Q4 => Across::of_rectangle(part).and_then(|across| across.too_stiff(case, spec)),
+            Element::Hex8 | Element::Tet4 => {
+                Across::of_box(spec).and_then(|across| across.too_stiff(case, spec))
+            }
+            _ => None,
+        }?;
+        let quadratic = element.with_degree(2)?;
+        let advice = format!("element = \"{quadratic:?}\", or more cells across the thickness");
+        Some(Found::of_body(&part.name, what).with_advice(advice))
+    };
+    model.parts.iter().zip(&case.bodies).filter_map(too_stiff).collect()
 }
 
-fn too_stiff(part: &BodyInstance) -> Option<String> {
+/// Length and thickness of a body, and the numbers of cells along them.
+struct Across {
+    sizes: [f64; 2],
+    cells: [f64; 2],
+}
+
+/// The roots of x² − (p/2) x + a = 0, the larger one first.
+fn roots(half: f64, product: f64) -> [f64; 2] {
+    let root = (0.25 * half * half - product).max(0.0).sqrt();
+    [0.5 * half + root, 0.5 * half - root]
+}
+
+impl Across {
+    fn of_rectangle(part: &BodyInstance) -> Option<Self> {
+        let mesh = part.body.mesh();
+        let skin = part.skin();
+        let sizes = roots(0.5 * perimeter(part), mesh.area());
+        let cells = roots(0.5 * skin.len() as f64, mesh.cell_count() as f64);
+        (sizes[1] > 0.0 && cells[1] > 0.0).then_some(Self { sizes, cells })
+    }
+
+    fn of_box(spec: &BodySpec) -> Option<Self> {
+        let MeshSpec::Box { min, max, cells, .. } = &spec.mesh else { return None };
+        let along = |i: usize| (max[i] - min[i], cells[i] as f64);
+        let mut all = [0, 1, 2].map(along);
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Some(Self { sizes: [all[0].0, all[2].0], cells: [all[0].1, all[2].1] })
+    }
+
+    fn too_stiff(&self, case: &Case, spec: &BodySpec) -> Option<String> {
+        let ratio = |of: &MaterialSpec| of.lambda / (2.0 * (of.lambda + of.mu));
+        let poisson = case.materials_of(spec).into_iter().map(ratio).reduce(f64::max)?;
+        let is_strain = spec.element.dimension() == 2 && case.plane == Plane::Strain;
+        let poisson = if is_strain { poisson / (1.0 - poisson) } else { poisson };
+        // A mean dilatation does not resist the change of volume of bending.
+        let averages = spec.volumetric == Volumetric::Mean;
+        let [length, thickness] = self.sizes;
+        let [along, across] = self.cells;
+        let aspect = (length / along) / (thickness / across);
+        let sheared = 0.5 * aspect * aspect / (1.0 + poisson);
+        let squeezed = if averages { 0.0 } else { 1.0 / (1.0 - poisson * poisson) - 1.0 };
+        let excess = (sheared + squeezed) / (across * across);
+        let is_bent = length >= SLENDER * thickness && excess > TOO_STIFF;
+        let by = if spec.element == Element::Tet4 { "more than" } else { "about" };
+        is_bent.then(|| told(spec.element, length / thickness, across, by, excess))
+    }
+}
+
+/// Perimeter of a body in the plane.
+fn perimeter(part: &BodyInstance) -> f64 {
     let mesh = part.body.mesh();
-    let area = mesh.area();
-    let skin = part.skin();
     let length = |facet: &Facet| {
         let [a, b] = [0, 1].map(|k| &mesh.nodes[facet.nodes[k]]);
         (b[0] - a[0]).hypot(b[1] - a[1])
     };
-    let half = 0.5 * skin.iter().map(length).sum::<f64>();
+    part.skin().iter().map(length).sum()
+}
+
+fn told(element: Element, slenderness: f64, across: f64, by: &str, excess: f64) -> String {
+    format!(
+        "{element:?} in a body {} times as long as thick with about {} cells across its thickness, too stiff in bending by {by} {} %",
+        short(slenderness),
+        across.round().max(1.0),
+        short(100.0 * excess)
+    )
+}
+
+fn triangles_across(part: &BodyInstance) -> Option<String> {
+    let mesh = part.body.mesh();
+    let area = mesh.area();
+    let skin = part.skin();
+    let half = 0.5 * perimeter(part);
     // A disc has no such roots.
     let root = (0.25 * half * half - area).sqrt();
     let length = 0.5 * half + root;
@@ -99,12 +184,5 @@ fn too_stiff(part: &BodyInstance) -> Option<String> {
     let facet = 2.0 * half / skin.len() as f64;
     let across = 0.5 * mesh.cell_count() as f64 * facet / length;
     let excess = 3.0 / (across * across);
-    (excess > TOO_STIFF).then(|| {
-        format!(
-            "T3 in a body {} times as long as thick with about {} cells across its thickness, too stiff in bending by about {} %",
-            short(length / thickness),
-            across.round().max(1.0),
-            short(100.0 * excess)
-        )
-    })
+    (excess > TOO_STIFF).then(|| told(Element::T3, length / thickness, across, "about", excess))
 }

@@ -51,7 +51,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 28] = [
+pub const WARNINGS: [Entry; 29] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -88,7 +88,8 @@ pub const WARNINGS: [Entry; 28] = [
     },
     Entry {
         id: "wave-speed",
-        why: "in solids it is between 1 and 20 000 m/s: stiffness and density are probably not in the units of the case",
+        why: "in solids it is between 1 and 20 000 m/s: stiffness and density are probably not in the units of the case, or \
+              Poisson's ratio is too close to 1/2",
         advice: "consistent units, as mm, s, t and MPa, or mm, ms, g and MPa",
         rule: Rule::Model(waves::wave_speed),
     },
@@ -113,8 +114,8 @@ pub const WARNINGS: [Entry; 28] = [
     },
     Entry {
         id: "stiff-bending",
-        why: "constant-strain triangles shear where they should bend",
-        advice: "element = \"T6\" or \"T10\", or more cells across the thickness",
+        why: "elements of degree 1 shear where they should bend",
+        advice: "an element of degree 2, or more cells across the thickness",
         rule: Rule::Model(elements::stiff_bending),
     },
     Entry {
@@ -147,9 +148,16 @@ pub const WARNINGS: [Entry; 28] = [
     Entry {
         id: "long-step",
         why: "the contact force of this step is an impulse divided by Δt: a shorter step changes the largest one by a \
-              fifth or more",
-        advice: "a shorter step; otherwise evaluate only impulse, contact duration and motion, and only if no energy was created",
+              fifth or more, and the duration and the rebound of an impact that takes few steps",
+        advice: "a shorter step, until the numbers that you need no longer change",
         rule: Rule::Record(steps::long_step),
+    },
+    Entry {
+        id: "merged-impacts",
+        why: "interruptions of contact that are shorter than 2 % of the recorded time do not end an episode: restitution, \
+              duration and impulse are those of several impacts, and depend on the end of the run",
+        advice: "an earlier end, or the numbers of a single impact from the columns of history.csv",
+        rule: Rule::Record(record::merged_impacts),
     },
     Entry {
         id: "one-node",

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::{Case, ContactSpec, Enforcement, Method};
 use carom_mechanics::model::Model;
-use carom_record::metrics::{self, MUCH_CREATED};
+use carom_record::metrics::{self, Episode, MUCH_CREATED, episodes, first_episode};
 use carom_record::{Event, Run};
 
 use super::found::{Found, covered_by, short};
@@ -40,7 +40,7 @@ pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let mut found = Vec::new();
     for contact in case.contacts.iter().filter(|_| case.dimension == 2) {
         let nodes = run.manifest.sides.get(&contact.secondary);
-        let nodes = nodes.map_or(0, |chains| chains.iter().map(Vec::len).sum::<usize>());
+        let nodes = nodes.map_or(0, |chains| chains.iter().flatten().collect::<BTreeSet<_>>().len());
         let of_contact = active.iter().filter(|((name, _), _)| *name == contact.name);
         if of_contact.map(|(_, nodes)| nodes.len()).max() == Some(1) && nodes > 1 {
             let what = format!(
@@ -50,6 +50,30 @@ pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
         }
     }
     found
+}
+
+/// Interruptions within the first episode that last longer than contact before and after them.
+pub(super) fn merged_impacts(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let times = run.times();
+    let Some(first) = first_episode(&run.history).filter(|_| !case.time.scheme.is_static()) else {
+        return Vec::new();
+    };
+    let all = episodes(&run.history, 0.0);
+    let closed = |of: &Episode| of.end.map_or(f64::INFINITY, |end| times[end] - times[of.start]);
+    let within = all.windows(2).filter(|pair| first.end.is_none_or(|end| pair[1].start < end));
+    let parts = within.filter_map(|pair| {
+        let open = times[pair[1].start] - times[pair[0].end?];
+        (open > closed(&pair[0]).max(closed(&pair[1]))).then_some(open)
+    });
+    let parts: Vec<f64> = parts.collect();
+    let Some(longest) = parts.iter().copied().reduce(f64::max) else { return Vec::new() };
+    let what = format!(
+        "{} impacts count as one episode: between them contact is open for up to {} {}, longer than it is closed",
+        parts.len() + 1,
+        short(longest),
+        case.labels().time
+    );
+    vec![Found::of_the_run(what)]
 }
 
 /// Most contacts that one warning names.

@@ -27,7 +27,15 @@ pub(super) fn long_step(case: &Case, model: &Model, run: &Run) -> Vec<Found> {
     if case.time.scheme.is_static() || case.output.history_every != 1 {
         return Vec::new();
     }
-    unresolved(case, model, run).into_iter().collect()
+    unseen(case, run).or_else(|| unresolved(case, model, run)).into_iter().collect()
+}
+
+/// A first contact that begins and ends between two rows.
+fn unseen(case: &Case, run: &Run) -> Option<Found> {
+    let episode = first_episode(&run.history).filter(|episode| episode.is_within_a_step(&run.history))?;
+    let time = short(run.times()[episode.start]);
+    let what = format!("contact begins and ends within the step before t = {time} {}", case.labels().time);
+    Some(Found::of_the_run(what))
 }
 
 fn unresolved(case: &Case, model: &Model, run: &Run) -> Option<Found> {

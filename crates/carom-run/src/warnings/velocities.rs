@@ -148,7 +148,7 @@ fn too_fast(case: &Case, model: &Model, start: &Start, contact: &ContactSpec) ->
     let softest = materials.min_by(|a, b| (a.density * bar(a)).total_cmp(&(b.density * bar(b))))?;
     let unit = case.labels().velocity;
     let what = format!(
-        "its bodies start with a relative velocity of {} {unit}, {} of the speed √(E/ρ) = {} {unit} of waves in a bar of \"{}\"",
+        "its bodies start with a relative velocity of {} {unit}, {} times the speed √(E/ρ) = {} {unit} of waves in a bar of \"{}\"",
         short(speed),
         short(speed / bar(softest)),
         short(bar(softest)),

@@ -307,6 +307,70 @@ fn triangles_of_constant_strain_in_bending() {
     assert!(found(CANTILEVER, &sets).is_empty(), "it is not slender");
 }
 
+/// Cells of four nodes, of any aspect, against beam theory.
+#[test]
+fn rectangles_in_bending() {
+    for cells in [[20, 1], [20, 2], [40, 2], [60, 4]] {
+        let sets = [format!("body.beam.mesh.cells={cells:?}"), "body.beam.element=Q4".to_owned()];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let warning = found(CANTILEVER, &sets);
+        let end = finish(simulation(CANTILEVER, &sets));
+        let tip = cells[0];
+        let deflection = -(end.state().y[2 * tip + 1] - end.model().reference[2 * tip + 1]);
+        let exact = 1e-3 * 20.0_f64.powi(3) * 12.0 / (3.0 * 1e6);
+        let excess = 100.0 * (exact / deflection - 1.0);
+        let [(id, what)] = &warning[..] else { panic!("{cells:?}: {warning:?}") };
+        let (before, _) = what.split_once(" %").unwrap();
+        let number: f64 = before.rsplit(' ').next().unwrap().parse().unwrap();
+        assert!(id == "stiff-bending" && (excess - number).abs() < 0.12 * number, "{what}: {excess}");
+    }
+    let fine = ["body.beam.mesh.cells=[120, 6]", "body.beam.element=Q4"];
+    assert!(found(CANTILEVER, &fine).is_empty());
+}
+
+/// A bar that bounces for so long that 2 % of the time are longer than its flights.
+#[test]
+fn impacts_that_count_as_one() {
+    let low = ["body.bar.gravity=[-1.0]", "time.step=0.02", "output.fields_every=0"];
+    let with = |end: &str| {
+        let sets: Vec<&str> = low.iter().copied().chain([end]).collect();
+        recorded(BAR, &sets)
+    };
+    let merged = "merged-impacts".to_owned();
+    assert!(!with("time.end=20.0").contains(&merged));
+    assert!(with("time.end=140.0").contains(&merged));
+}
+
+/// A contact that is shorter than a step is an impact, and is told.
+#[test]
+fn an_impact_within_a_step() {
+    let text = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1100.0, young = 5e6, poisson = 0.45 }]
+[[body]]
+name = "ball"
+material = "rubber"
+element = "T6"
+mesh = { shape = "disc", radius = 0.03, center = [0.0, 0.0301], size = 0.006 }
+velocity = [4.0, -3.0]
+[[contact]]
+name = "floor"
+secondary = "ball.arc"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+mu = 0.1
+[time]
+end = 0.02
+step = 5e-3
+scheme = { kind = "chung-hulbert", rho_inf = 0.8 }
+[output]
+fields_every = 0
+"#;
+    let warnings = recorded_in_full(text, &[]);
+    let told = warnings.iter().find(|warning| warning.id == "long-step").unwrap();
+    assert!(told.what.contains("contact begins and ends within the step before t = 0.005"), "{}", told.what);
+    assert!(!recorded(text, &["time.step=5e-5"]).contains(&"long-step".to_owned()));
+}
+
 /// The last cell relaxes in the first step: a tenth of the energy is gone, and no more later.
 #[test]
 fn a_strained_body_without_mass_at_its_contact() {

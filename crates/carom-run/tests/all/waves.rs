@@ -188,7 +188,7 @@ fn a_speed_of_waves_that_no_solid_has() {
 #[test]
 fn an_impact_that_no_elastic_body_survives() {
     let fast = |text: &str, sets: &[&str]| warned(text, "fast-impact", sets);
-    let stated = "contact \"hit\": its bodies start with a relative velocity of 0.340 m/s, 0.340 of the speed √(E/ρ) = 1.00 m/s of waves in a bar of \"m\"";
+    let stated = "contact \"hit\": its bodies start with a relative velocity of 0.340 m/s, 0.340 times the speed √(E/ρ) = 1.00 m/s of waves in a bar of \"m\"";
     assert_eq!(fast(WALL, &["body.bar.velocity=[-0.34]"]), [stated]);
     assert!(fast(WALL, &["body.bar.velocity=[-0.33]"]).is_empty());
     // A bar that cannot widen carries faster waves than one that can: its modulus is not E.
@@ -200,7 +200,7 @@ fn an_impact_that_no_elastic_body_survives() {
     };
     let what = strikes("-0.2", "0.2").swap_remove(0);
     assert!(
-        what.contains("velocity of 0.400 m/s, 0.400 of") && what.ends_with("in a bar of \"soft\""),
+        what.contains("velocity of 0.400 m/s, 0.400 times") && what.ends_with("in a bar of \"soft\""),
         "{what}"
     );
     assert!(strikes("-0.5", "-0.5").is_empty());
