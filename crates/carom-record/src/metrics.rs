@@ -55,6 +55,7 @@ pub(crate) use evaluated::{of_any_column, of_columns, of_no_column};
 pub use file::write;
 pub(crate) use given::Given;
 pub use given::contact_force;
+pub(crate) use given::total_force;
 pub use group::{TITLES, group};
 pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub use overlay::{OVERLAY, overlays};

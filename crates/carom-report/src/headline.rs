@@ -31,6 +31,9 @@ fn duration(x: f64, unit: &str) -> String {
     if x < 1e-3 { amount(x, unit) } else { format!("{} {unit}", significant(x, 3)).trim_end().to_owned() }
 }
 
+/// Resultant, as a share of the forces at nodes, that is the round-off of forces that cancel.
+const CANCELS: f64 = 1e-8;
+
 /// Results of a run from which its headline numbers are chosen.
 struct Facts<'a> {
     run: &'a Recorded,
@@ -124,11 +127,21 @@ impl Facts<'_> {
         ))
     }
 
+    /// Of an impact a mean: the force of single steps has no limit. None if the forces of all nodes
+    /// cancel, as around a ring.
     fn peak_force(&self) -> Option<Number> {
-        let forces = metrics::contact_force(&self.run.history);
+        let forces = metrics::contact_force(self.run);
         let row = (0..forces.len()).max_by(|a, b| forces[*a].total_cmp(&forces[*b]))?;
-        (forces[row] > 0.0)
-            .then(|| Number::new("Largest contact force", self.force(forces[row]), self.at(row)))
+        if forces[row] <= CANCELS * crate::noise::force_size(self.run) {
+            return None;
+        }
+        let averaged = self.metric("peak_mean_force").filter(|_| metrics::no_rebound(self.run).is_none());
+        Some(match averaged {
+            Some(mean) => {
+                Number::new("Largest contact force", self.force(mean), "mean over 1/16 of the contact")
+            }
+            None => Number::new("Largest contact force", self.force(forces[row]), self.at(row)),
+        })
     }
 
     fn mean_force(&self) -> Option<Number> {

@@ -19,7 +19,7 @@ pub(crate) fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 /// cancel.
 pub(crate) fn force_size(run: &Run) -> f64 {
     let multipliers = run.contact.iter().map(|row| row.multiplier.abs()).filter(|x| x.is_finite());
-    let resultants = metrics::contact_force(&run.history);
+    let resultants = metrics::contact_force(run);
     multipliers.chain(resultants).fold(0.0, f64::max)
 }
 

@@ -7,7 +7,8 @@
 
 use super::definition::Metric;
 use super::episode::first_episode;
-use super::evaluated::{all, of_columns, probe_columns};
+use super::evaluated::{of_columns, of_history, probe_columns};
+use super::given::Given;
 use super::samples::{at, integral};
 use crate::{History, Run};
 
@@ -22,9 +23,13 @@ pub fn of_averages(run: &Run) -> Vec<Metric> {
     let window = first_episode(history).and_then(|episode| episode.window(history.times()));
     let Some(window) = window else { return Vec::new() };
     let probes = probe_columns(run);
-    let averaged =
-        averaged(history, window, |name| name.starts_with("contact_force_") || probes.contains(&name));
-    let mut metrics = all(&averaged);
+    let contacts = &run.manifest.facts.contacts;
+    let is_force = |name: &str| {
+        let of_contact = name.rsplit_once(".force_").map(|(contact, _)| contact);
+        name.starts_with("contact_force_") || contacts.iter().any(|of| of_contact == Some(&of.name))
+    };
+    let averaged = averaged(history, window, |name| is_force(name) || probes.contains(&name));
+    let mut metrics: Vec<Metric> = of_history(&Given::of_changed(run, &averaged)).collect();
     metrics.retain(|metric| OF_FORCE.contains(&metric.name.as_ref()));
     for column in probes {
         let of_rows = |name: &str| OF_COLUMN.iter().any(|what| name.ends_with(&format!(":{what}")));

@@ -1,4 +1,5 @@
-//! Contact episodes: spans of rows with `active` > 0, including short interruptions.
+//! Contact episodes: spans of rows in contact, including short interruptions. A row is in contact
+//! if pairs are active, or became active and opened again since the row before it.
 
 use std::ops::Range;
 
@@ -22,6 +23,12 @@ impl Episode {
         Some((times[self.end?] - times[self.start]) / WINDOWS)
     }
 
+    /// Whether no row of the episode has active pairs: contact begins and ends between two rows.
+    pub fn is_within_a_step(self, history: &History) -> bool {
+        let active = history.column("active").unwrap_or_default();
+        active[self.start..self.end.unwrap_or(active.len())].iter().all(|count| *count == 0.0)
+    }
+
     /// Indices of the rows of the episode, from the row before its first one to the row that ends
     /// it.
     pub(super) fn span(self, history: &History) -> Range<usize> {
@@ -32,14 +39,19 @@ impl Episode {
 /// Contact episodes; interruptions shorter than `bridge` (in time) do not end them.
 pub fn episodes(history: &History, bridge: f64) -> Vec<Episode> {
     let times = history.times();
-    let active = history.column("active").unwrap_or_default();
+    let [active, begins] = ["active", "activations"].map(|name| history.column(name).unwrap_or_default());
+    let is_in_contact = |row: usize| {
+        let counts = [active.get(row), begins.get(row)];
+        counts.into_iter().flatten().any(|count| *count > 0.0)
+    };
     let mut found: Vec<Episode> = Vec::new();
-    for (i, _) in active.iter().enumerate().filter(|(_, n)| **n > 0.0) {
+    for i in (0..active.len()).filter(|row| is_in_contact(*row)) {
         match found.last_mut() {
             Some(last) if last.end.is_none_or(|end| times[i] - times[end] < bridge) => last.end = None,
             _ => found.push(Episode { start: i, end: None }),
         }
-        if active.get(i + 1) == Some(&0.0)
+        if i + 1 < active.len()
+            && !is_in_contact(i + 1)
             && let Some(last) = found.last_mut()
         {
             last.end = Some(i + 1);

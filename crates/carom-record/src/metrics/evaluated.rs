@@ -46,7 +46,12 @@ fn evaluated(table: &'static [Definition], given: &Given) -> impl Iterator<Item 
 
 /// Every named metric of a history.
 pub fn all(history: &History) -> Vec<Metric> {
-    evaluated(&HISTORY, &Given::of(history)).collect()
+    of_history(&Given::of(history)).collect()
+}
+
+/// Every named metric of a history, which may be that of a run.
+pub(super) fn of_history(given: &Given) -> impl Iterator<Item = Metric> {
+    evaluated(&HISTORY, given)
 }
 
 impl Metric {
@@ -101,7 +106,7 @@ pub fn of_run(run: &Run) -> Vec<Metric> {
 pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
     let given = Given::of_run(run);
     let is_defined = |metric: &Metric| metric.value.is_some();
-    let mut metrics: Vec<Metric> = evaluated(&HISTORY, &given).chain(evaluated(&REBOUND, &given)).collect();
+    let mut metrics: Vec<Metric> = of_history(&given).chain(evaluated(&REBOUND, &given)).collect();
     let impacts = given.episodes.len().min(IMPACTS);
     if impacts > 1 && !run.manifest.facts.is_static {
         metrics.extend((1..=impacts).map(|n| Metric {

@@ -1,8 +1,10 @@
 //! Input of the metrics.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::episode::{Episode, default_bridge, episodes};
+use crate::facts::{ContactFacts, body_of};
 use crate::{History, Overlay, Run};
 
 /// A history with its contact episodes; where a metric needs them, the run, a column or measured
@@ -25,7 +27,12 @@ impl<'a> Given<'a> {
     }
 
     pub(crate) fn of_run(run: &'a Run) -> Self {
-        Self { run: Some(run), ..Self::of(&run.history) }
+        Self::of_changed(run, &run.history)
+    }
+
+    /// Of a run, with other values of its history.
+    pub(super) fn of_changed(run: &'a Run, history: &'a History) -> Self {
+        Self { run: Some(run), ..Self::of(history) }
     }
 
     /// With a column that a metric is computed of.
@@ -72,13 +79,29 @@ impl<'a> Given<'a> {
         Some(self.time(first.end?) - self.time(first.start))
     }
 
+    /// Contacts of the run; none where only a history is known.
+    fn contacts(&self) -> &'a [ContactFacts] {
+        self.run.map_or(&[], |run| &run.manifest.facts.contacts)
+    }
+
+    /// Magnitude of the contact force in every row, of several contacts the largest.
     pub(super) fn force(&self) -> Vec<f64> {
-        contact_force(self.history)
+        largest_force(self.history, self.contacts())
+    }
+
+    /// The impulse of all contacts, if all are contacts of one secondary body, on which it acts.
+    pub(super) fn impulses(&self) -> Option<Vec<&'a [f64]>> {
+        let contacts = self.contacts();
+        let bodies: BTreeSet<&str> = contacts.iter().map(|of| body_of(&of.secondary)).collect();
+        let primaries = contacts.iter().filter_map(|of| of.primary.as_deref()).map(body_of);
+        let is_of_one = contacts.len() < 2
+            || bodies.len() == 1 && !primaries.into_iter().any(|body| bodies.contains(body));
+        is_of_one.then(|| vector(self.history, "contact_impulse"))
     }
 
     /// Change of the impulse along an axis over the first episode.
     pub(super) fn impulse(&self, axis: usize) -> Option<f64> {
-        let p = *vector(self.history, "contact_impulse").get(axis)?;
+        let p = *self.impulses()?.get(axis)?;
         let rows = self.rows()?;
         Some(p[rows.end - 1] - p[rows.start])
     }
@@ -99,7 +122,22 @@ pub(super) fn norms(vector: &[&[f64]]) -> Vec<f64> {
     (0..rows).map(|i| vector.iter().fold(0.0, |sum, v| f64::hypot(sum, v[i]))).collect()
 }
 
-/// Magnitude of the contact force in every row.
-pub fn contact_force(history: &History) -> Vec<f64> {
+/// Magnitude of the sum of the contact forces in every row.
+pub(crate) fn total_force(history: &History) -> Vec<f64> {
     norms(&vector(history, "contact_force"))
+}
+
+/// Magnitude of the contact force in every row, of several contacts the largest: their sum may be a
+/// force on no body.
+fn largest_force(history: &History, contacts: &[ContactFacts]) -> Vec<f64> {
+    let of_contact = |of: &ContactFacts| norms(&vector(history, &format!("{}.force", of.name)));
+    let of_contacts = contacts.iter().filter(|_| contacts.len() > 1).map(of_contact);
+    let larger = |one: Vec<f64>, other: Vec<f64>| one.iter().zip(&other).map(|(a, b)| a.max(*b)).collect();
+    let largest = of_contacts.filter(|force| !force.is_empty()).reduce(larger);
+    largest.unwrap_or_else(|| total_force(history))
+}
+
+/// Magnitude of the contact force in every row, of several contacts the largest.
+pub fn contact_force(run: &Run) -> Vec<f64> {
+    largest_force(&run.history, &run.manifest.facts.contacts)
 }

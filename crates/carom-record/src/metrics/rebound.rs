@@ -54,9 +54,15 @@ impl<'a> Impact<'a> {
     /// strikes nothing but itself or several parties of different velocities, one that is tied to
     /// another body, with which it moves, or the unknown velocity of a support.
     pub fn first(run: &'a Run) -> Result<Self, &'static str> {
+        if run.manifest.facts.is_static {
+            return Err("load steps have no velocities");
+        }
         let episode = first_episode(&run.history).ok_or("no contact closed")?;
         let striker = striker(&run.history).ok_or("no body moves")?;
         let before = episode.start.checked_sub(1).ok_or("contact is closed at the start")?;
+        if episode.is_within_a_step(&run.history) {
+            return Err("contact begins and ends within a step");
+        }
         let mut impact =
             Self::of(striker, run, episode).ok_or("the fastest body strikes nothing but itself")?;
         let is_tied = |body: &str| run.manifest.facts.tied.iter().any(|tied| tied == body);
@@ -157,13 +163,16 @@ pub(super) fn turning_time(given: &Given) -> Option<f64> {
 /// Newton's coefficient of restitution.
 pub(super) fn restitution(run: &Run) -> Option<f64> {
     let impact = Impact::first(run).ok()?;
-    Some(impact.separation? / impact.approach)
+    impact.separation.filter(|separation| *separation >= 0.0).map(|separation| separation / impact.approach)
 }
 
 /// Why a run has no coefficient of restitution.
 pub fn no_rebound(run: &Run) -> Option<&'static str> {
     match Impact::first(run) {
-        Ok(impact) if impact.separation.is_some() => None,
+        Ok(Impact { separation: Some(separation), .. }) if separation >= 0.0 => None,
+        Ok(Impact { separation: Some(_), .. }) => {
+            Some("the bodies still approach when the first contact ends")
+        }
         Ok(_) => Some("the first contact lasts to the end of the run"),
         Err(why) => Some(why),
     }

@@ -4,7 +4,6 @@
 
 use super::column::{column_roughness, peak_of_means};
 use super::definition::{Definition, OWN, TABLES, VARIATION, d};
-use super::given::vector;
 use super::samples::{extreme, peak_mean, roughness};
 use super::striker::apex;
 use super::{force, ledger, oscillation};
@@ -15,9 +14,9 @@ pub const HISTORY: [Definition; 28] = [
     d(
         "contact_start",
         Unit::Time,
-        "t_a, a the first row with active > 0",
+        "t_a, a the first row in contact",
         TABLES,
-        "first recorded time with an active contact node",
+        "first recorded time in contact",
         |f| Some(f.time(f.first()?.start)),
     ),
     d(
@@ -25,7 +24,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Time,
         "t_b, b the first row after the episode",
         TABLES,
-        "first recorded time without an active contact node after the first episode",
+        "first recorded time without contact after the first episode",
         |f| Some(f.time(f.first()?.end?)),
     ),
     d("contact_duration", Unit::Time, "t_b − t_a", TABLES, "duration of the first episode", |f| {
@@ -34,7 +33,7 @@ pub const HISTORY: [Definition; 28] = [
     d(
         "contact_episodes",
         Unit::None,
-        "spans of rows with active > 0, interruptions < 0.02 (t_last − t_0) included",
+        "spans of rows in contact, interruptions < 0.02 (t_last − t_0) included",
         OWN,
         "number of contact episodes; interruptions shorter than 2 % of the recorded time are ignored",
         |f| f.history.column("active").map(|_| f.episodes.len() as f64),
@@ -44,7 +43,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Impulse,
         "P_x(t_b) − P_x(t_{a−1})",
         TABLES,
-        "x component of the contact impulse of the first episode, on the secondary side",
+        "x component of the contact impulse of the first episode, on the secondary side; not available for contacts of several secondary bodies",
         |f| f.impulse(0),
     ),
     d(
@@ -52,7 +51,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Impulse,
         "P_y(t_b) − P_y(t_{a−1})",
         TABLES,
-        "y component of the contact impulse of the first episode, on the secondary side",
+        "y component of the contact impulse of the first episode, on the secondary side; not available for contacts of several secondary bodies",
         |f| f.impulse(1),
     ),
     d(
@@ -60,7 +59,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Impulse,
         "P_z(t_b) − P_z(t_{a−1})",
         OWN,
-        "z component of the contact impulse of the first episode, on the secondary side",
+        "z component of the contact impulse of the first episode, on the secondary side; not available for contacts of several secondary bodies",
         |f| f.impulse(2),
     ),
     d(
@@ -68,7 +67,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Force,
         "max |F|",
         TABLES,
-        "largest contact force at the end of any recorded step (does not converge with the time step)",
+        "largest contact force at the end of any recorded step, of several contacts the largest (does not converge with the time step)",
         |f| extreme(&f.force(), f64::gt).map(|x| x.1),
     ),
     d(
@@ -76,8 +75,8 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Force,
         "max_t |P(t + w) − P(t)|/w, w = (t_b − t_a)/16",
         OWN,
-        "largest contact force averaged over a window of 1/16 of the first episode, from the impulse; with about one step per window it may exceed peak_force",
-        |f| peak_mean(f.history.times(), &vector(f.history, "contact_impulse"), f.window()?),
+        "largest contact force averaged over a window of 1/16 of the first episode, from the impulse; not available for contacts of several secondary bodies; with about one step per window it may exceed peak_force",
+        |f| peak_mean(f.history.times(), &f.impulses()?, f.window()?),
     ),
     d(
         "force_roughness",

@@ -140,7 +140,7 @@ impl Judge<'_> {
         let relative =
             known.iter().map(|(_, right, off)| if *right == 0.0 { *off } else { (off / right).abs() });
         let words = known.iter().map(|(name, right, _)| {
-            if *right == 0.0 { format!("{name}, which should be 0") } else { format!("error of {name}") }
+            if *right == 0.0 { format!("{name} (exactly 0)") } else { format!("error of {name}") }
         });
         let measure = Measure {
             words: words.collect::<Vec<_>>().join(" and "),

@@ -171,7 +171,7 @@ impl Reference {
             known.extend(metrics::of_columns(&history, column));
         }
         if history.column("contact_force_x").is_some() {
-            columns.insert(FORCE.to_owned(), metrics::contact_force(&history));
+            columns.insert(FORCE.to_owned(), metrics::total_force(&history));
         }
         let sampled = Trajectory { times, columns, forces: forces(&history), metrics: known };
         let what = "the exact formulas of [exact]".to_owned();

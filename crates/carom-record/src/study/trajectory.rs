@@ -58,7 +58,7 @@ impl Trajectory {
         let names = metrics::probe_columns(run).into_iter().chain(centers);
         let columns = names.filter_map(|name| Some((name.to_owned(), history.column(name)?.to_vec())));
         let mut columns: BTreeMap<_, _> = columns.collect();
-        columns.insert(FORCE.to_owned(), metrics::contact_force(history));
+        columns.insert(FORCE.to_owned(), metrics::contact_force(run));
         Self { times: history.times().to_vec(), columns, forces: forces(history), metrics: metrics.to_vec() }
     }
 

@@ -164,11 +164,11 @@ fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
     let mut reasons = vec![format!("{}: {}", field.measure.words, known(chosen))];
     reasons.push(match field.required() {
         Some(accuracy) => {
-            format!("least cost of the arms with an error of at most {accuracy}, its uncertainty included")
+            format!("smallest error of the arms within 10 % of the lowest cost, of those with an error of at most {accuracy}, its uncertainty included")
         }
         None if best.arm == chosen.arm => "no arm has a smaller error".to_owned(),
         None => format!(
-            "least cost of the arms that are as accurate as the most accurate one, up to 5 %, or half less accurate and not distinguished from it, {}: {}",
+            "smallest error of the arms within 10 % of the lowest cost, of those that are as accurate as the most accurate one, up to 5 %, or half less accurate and not distinguished from it, {}: {}",
             field.name(best),
             known(best)
         ),

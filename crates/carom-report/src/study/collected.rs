@@ -130,7 +130,7 @@ pub(super) fn collect(
             None => columns.push(Column { name: name.to_owned(), unit: to, curves: vec![(arm, x, y)] }),
         }
     };
-    let force = contact_force(&run.history);
+    let force = contact_force(run);
     if force.iter().any(|f| *f > 0.0) {
         put(FORCE, &force, run.history.unit("contact_force_x"));
     }

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use carom_record::metrics::of_rebound;
+use carom_record::metrics::{of_rebound, of_run};
 use carom_record::{Run, Source};
 use carom_run::recording::run;
 
@@ -202,4 +202,27 @@ fn an_obstacle_that_turns_has_its_velocity_at_the_contact() {
             },
         );
     assert!((swung / moved - 1.0).abs() < 1e-3, "{swung} {moved}");
+}
+
+/// Three bars in a row: metrics of the contact force do not depend on which sides are secondary,
+/// and those of the impulse, which is that of no body, are not available.
+#[test]
+fn contacts_of_several_bodies() {
+    const ROW: &str = include_str!("../../../../cases/bar/three-bars.toml");
+    let swapped = ROW
+        .replace("secondary = \"second.right\"", "secondary = \"third.left\"")
+        .replace("primary = \"third.left\"", "primary = \"second.right\"");
+    let of = |text: &str, name: &str| {
+        of_run(&record(text, &[])).into_iter().find(|metric| metric.name == name).unwrap().value
+    };
+    for name in ["peak_force", "force_roughness"] {
+        let [one, other] = [ROW, &swapped].map(|text| of(text, name).unwrap());
+        assert!((one - other).abs() < 1e-9 * one.abs(), "{name}: {one} {other}");
+    }
+    // Each contact transfers the force ρ c v/2, with the overshoot of a front that jumps.
+    let force = of(ROW, "peak_force").unwrap();
+    assert!((force / 0.05 - 1.0).abs() < 0.4, "{force}");
+    for name in ["impulse_x", "peak_mean_force"] {
+        assert_eq!([ROW, &swapped].map(|text| of(text, name)), [None, None], "{name}");
+    }
 }
