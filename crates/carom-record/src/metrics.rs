@@ -1,12 +1,13 @@
 //! Metrics of a run, as functions of its record: most of its history alone.
 //!
-//! A contact *episode* is a span of rows with `active` > 0; interruptions shorter than `bridge` (by
-//! default 2 % of the recorded time) do not end it. It starts with the first row in contact and
-//! ends with the first row without contact. Both are ends of steps, so a time is late by at most
-//! one step. The *striker* is the body whose centre moves fastest in the row before the first
-//! episode; with this definition, swapping secondary and primary changes no metric. An impulse is a
-//! difference of the recorded `contact_impulse`, which the time integrator accumulates; a mean
-//! force over a window w is [P(t + w) − P(t)]/w, not a mean of samples.
+//! A contact *episode* is a span of rows in contact (`episode.rs`); interruptions shorter than
+//! `bridge` (by default 2 % of the recorded time) do not end it. It starts with the first row in
+//! contact and ends with the first row without contact. Both are ends of steps, so a time is late
+//! by at most one step. The *striker* is the body whose centre moves fastest in the row before the
+//! first episode; with this definition, swapping secondary and primary changes no metric but the
+//! signs of impulses, if contacts count as one (`given.rs`). An impulse is a difference of the
+//! recorded `contact_impulse`, which the time integrator accumulates; a mean force over a window w
+//! is [P(t + w) − P(t)]/w, not a mean of samples.
 
 #[doc(hidden)]
 pub mod averaged;
@@ -55,7 +56,7 @@ pub(crate) use evaluated::{of_any_column, of_columns, of_no_column};
 pub use file::write;
 pub(crate) use given::Given;
 pub use given::contact_force;
-pub(crate) use given::total_force;
+pub(crate) use given::{count_as_one, total_force};
 pub use group::{TITLES, group};
 pub use ledger::{MUCH_CREATED, energy_lost_at};
 pub use overlay::{OVERLAY, overlays};

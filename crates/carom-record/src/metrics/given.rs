@@ -84,19 +84,14 @@ impl<'a> Given<'a> {
         self.run.map_or(&[], |run| &run.manifest.facts.contacts)
     }
 
-    /// Magnitude of the contact force in every row, of several contacts the largest.
+    /// Magnitude of the contact force in every row.
     pub(super) fn force(&self) -> Vec<f64> {
-        largest_force(self.history, self.contacts())
+        force(self.history, self.contacts())
     }
 
-    /// The impulse of all contacts, if all are contacts of one secondary body, on which it acts.
+    /// The impulse of all contacts, if they count as one.
     pub(super) fn impulses(&self) -> Option<Vec<&'a [f64]>> {
-        let contacts = self.contacts();
-        let bodies: BTreeSet<&str> = contacts.iter().map(|of| body_of(&of.secondary)).collect();
-        let primaries = contacts.iter().filter_map(|of| of.primary.as_deref()).map(body_of);
-        let is_of_one = contacts.len() < 2
-            || bodies.len() == 1 && !primaries.into_iter().any(|body| bodies.contains(body));
-        is_of_one.then(|| vector(self.history, "contact_impulse"))
+        count_as_one(self.contacts()).then(|| vector(self.history, "contact_impulse"))
     }
 
     /// Change of the impulse along an axis over the first episode.
@@ -127,17 +122,25 @@ pub(crate) fn total_force(history: &History) -> Vec<f64> {
     norms(&vector(history, "contact_force"))
 }
 
-/// Magnitude of the contact force in every row, of several contacts the largest: their sum may be a
-/// force on no body.
-fn largest_force(history: &History, contacts: &[ContactFacts]) -> Vec<f64> {
-    let of_contact = |of: &ContactFacts| norms(&vector(history, &format!("{}.force", of.name)));
-    let of_contacts = contacts.iter().filter(|_| contacts.len() > 1).map(of_contact);
+/// Whether the forces of contacts are added: of a single one, or of one body with several rigid
+/// obstacles. Other sums are forces on no body, and depend on which sides are secondary.
+pub(crate) fn count_as_one(contacts: &[ContactFacts]) -> bool {
+    let bodies: BTreeSet<&str> = contacts.iter().map(|of| body_of(&of.secondary)).collect();
+    contacts.len() < 2 || bodies.len() == 1 && contacts.iter().all(|of| of.primary.is_none())
+}
+
+/// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
+fn force(history: &History, contacts: &[ContactFacts]) -> Vec<f64> {
+    if count_as_one(contacts) {
+        return total_force(history);
+    }
+    let of_contacts = contacts.iter().map(|of| norms(&vector(history, &format!("{}.force", of.name))));
     let larger = |one: Vec<f64>, other: Vec<f64>| one.iter().zip(&other).map(|(a, b)| a.max(*b)).collect();
     let largest = of_contacts.filter(|force| !force.is_empty()).reduce(larger);
     largest.unwrap_or_else(|| total_force(history))
 }
 
-/// Magnitude of the contact force in every row, of several contacts the largest.
+/// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
 pub fn contact_force(run: &Run) -> Vec<f64> {
-    largest_force(&run.history, &run.manifest.facts.contacts)
+    force(&run.history, &run.manifest.facts.contacts)
 }

@@ -61,7 +61,7 @@ impl<'a> Impact<'a> {
         let striker = striker(&run.history).ok_or("no body moves")?;
         let before = episode.start.checked_sub(1).ok_or("contact is closed at the start")?;
         if episode.is_within_a_step(&run.history) {
-            return Err("contact begins and ends within a step");
+            return Err("contact begins and ends between two rows");
         }
         let mut impact =
             Self::of(striker, run, episode).ok_or("the fastest body strikes nothing but itself")?;
@@ -72,11 +72,13 @@ impl<'a> Impact<'a> {
         impact.approach = -impact
             .relative(run, before)
             .ok_or("several bodies of different velocities are struck, or that of a support is not known")?;
-        impact.separation = episode.end.and_then(|end| impact.relative(run, end));
         let parties = impact.others.iter().copied().chain([Some(striker)]);
         let fastest = parties.filter_map(|party| impact.velocity(run, party, before)).flatten();
         let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
-        let is_approach = impact.approach > AT_REST * fastest;
+        let still = AT_REST * fastest;
+        let separation = episode.end.and_then(|end| impact.relative(run, end));
+        impact.separation = separation.map(|w| if w.abs() <= still { 0.0 } else { w });
+        let is_approach = impact.approach > still;
         if is_approach { Ok(impact) } else { Err("the bodies did not approach each other before contact") }
     }
 

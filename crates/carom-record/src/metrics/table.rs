@@ -43,7 +43,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Impulse,
         "P_x(t_b) − P_x(t_{a−1})",
         TABLES,
-        "x component of the contact impulse of the first episode, on the secondary side; not available for contacts of several secondary bodies",
+        "x component of the contact impulse of the first episode, on the secondary side; not available for contacts that do not count as one",
         |f| f.impulse(0),
     ),
     d(
@@ -51,7 +51,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Impulse,
         "P_y(t_b) − P_y(t_{a−1})",
         TABLES,
-        "y component of the contact impulse of the first episode, on the secondary side; not available for contacts of several secondary bodies",
+        "y component of the contact impulse of the first episode, on the secondary side; not available for contacts that do not count as one",
         |f| f.impulse(1),
     ),
     d(
@@ -59,7 +59,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Impulse,
         "P_z(t_b) − P_z(t_{a−1})",
         OWN,
-        "z component of the contact impulse of the first episode, on the secondary side; not available for contacts of several secondary bodies",
+        "z component of the contact impulse of the first episode, on the secondary side; not available for contacts that do not count as one",
         |f| f.impulse(2),
     ),
     d(
@@ -67,7 +67,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Force,
         "max |F|",
         TABLES,
-        "largest contact force at the end of any recorded step, of several contacts the largest (does not converge with the time step)",
+        "largest contact force at the end of any recorded step, of contacts that do not count as one the largest (does not converge with the time step)",
         |f| extreme(&f.force(), f64::gt).map(|x| x.1),
     ),
     d(
@@ -75,7 +75,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Force,
         "max_t |P(t + w) − P(t)|/w, w = (t_b − t_a)/16",
         OWN,
-        "largest contact force averaged over a window of 1/16 of the first episode, from the impulse; not available for contacts of several secondary bodies; with about one step per window it may exceed peak_force",
+        "largest contact force averaged over a window of 1/16 of the first episode, from the impulse; not available for contacts that do not count as one; with about one step per window it may exceed peak_force",
         |f| peak_mean(f.history.times(), &f.impulses()?, f.window()?),
     ),
     d(

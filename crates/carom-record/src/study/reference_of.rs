@@ -85,7 +85,12 @@ impl StudyManifest {
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
             let Some(facts) = self.arms.first().map(|arm| &arm.facts) else { return Ok(None) };
-            let exact = Reference::of_formulas(&facts.exact, facts.end, 8000);
+            // A formula of the sum says nothing of contacts that do not count as one.
+            let mut formulas = facts.exact.clone();
+            formulas.retain(|name, _| {
+                metrics::count_as_one(&facts.contacts) || !name.starts_with("contact_force_")
+            });
+            let exact = Reference::of_formulas(&formulas, facts.end, 8000);
             let window = self.window("[exact] needs `window`, the time to average over");
             return Ok(exact.map(|exact| exact.grouped(&self.bodies_of_probes(), &window)));
         }
