@@ -1,7 +1,7 @@
 //! Bodies that overlap at the start.
 
 use carom_case::{Case, Overlap, PrimarySpec, Problem};
-use carom_mechanics::model::Model;
+use carom_mechanics::model::{BodyInstance, Model};
 
 use super::side::{coordinates, owner};
 use crate::quantity::{at_least, quantity};
@@ -50,8 +50,54 @@ pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> b
             ),
         )
     };
-    let found = carom_mechanics::inside(model, x, ROUND_OFF * model.scale).into_iter();
-    found.filter(|(k, ..)| counts(case.contacts[*k].overlap)).map(problem).collect()
+    let mut found = carom_mechanics::inside(model, x, ROUND_OFF * model.scale);
+    found.retain(|(k, ..)| counts(case.contacts[*k].overlap));
+    let is_known = |contact: usize| found.iter().any(|(k, ..)| *k == contact);
+    let others = (0..case.contacts.len()).filter(|&k| counts(case.contacts[k].overlap) && !is_known(k));
+    let at_one_place: Vec<Problem> = others.filter_map(|k| at_one_place(case, model, k)).collect();
+    found.into_iter().map(problem).chain(at_one_place).collect()
+}
+
+/// Bodies one of which has a cell in the other one, although no node of their sides is inside: as
+/// where a body is given twice.
+fn at_one_place(case: &Case, model: &Model, contact: usize) -> Option<Problem> {
+    let names: Vec<&str> = case.contacts[contact].bodies().collect();
+    let [a, b] = names[..] else { return None };
+    let part = |name: &str| model.parts.iter().find(|part| part.name == name && !part.is_rigid());
+    let [one, other] = [part(a)?, part(b)?];
+    let stays = |part: &BodyInstance| part.of(&model.initial_position) == part.of(&model.reference);
+    if a == b || !stays(one) || !stays(other) {
+        return None;
+    }
+    let holds = |outer: &BodyInstance, inner: &BodyInstance| {
+        let center = middle_of_first_cell(inner);
+        let is_near = (0..model.dimension).all(|i| {
+            let along = || outer.body.mesh().nodes.iter().map(|node| node[i]);
+            along().fold(f64::INFINITY, f64::min) <= center[i]
+                && center[i] <= along().fold(-f64::INFINITY, f64::max)
+        });
+        (is_near && !outer.body.locate(&center).is_empty()).then_some(center)
+    };
+    let place = holds(one, other).or_else(|| holds(other, one))?;
+    Some(Problem::new(
+        format!("contact[{}]", case.contacts[contact].entry),
+        format!("the bodies of contact \"{}\" overlap at the start", model.contacts[contact].name),
+        format!("both \"{a}\" and \"{b}\" are at {}", coordinates(&place)),
+        "move a body, or remove the one that is given twice".to_owned(),
+    ))
+}
+
+fn middle_of_first_cell(part: &BodyInstance) -> Vec<f64> {
+    let mesh = part.body.mesh();
+    let nodes = mesh.cell(0);
+    let d = mesh.dimension();
+    let all = part.body.reference_nodes();
+    let xi: Vec<f64> =
+        (0..d).map(|i| all.iter().map(|node| node[i]).sum::<f64>() / all.len() as f64).collect();
+    let mut shares = vec![0.0; nodes.len()];
+    part.body.shape(&xi, &mut shares);
+    let along = |i: usize| nodes.iter().zip(&shares).map(|(node, share)| share * mesh.nodes[*node][i]).sum();
+    (0..d).map(along).collect()
 }
 
 /// How far a node of a contact lies behind the straight facet that it faces and in front of the

@@ -2,7 +2,7 @@
 
 use carom_run::Setup;
 
-use crate::common::{case, finish, simulation};
+use crate::common::{DISCS, case, finish, simulation};
 
 const BARS: &str = include_str!("../../../../cases/overlap/bars.toml");
 const PRESS: &str = include_str!("../../../../cases/overlap/press-t3.toml");
@@ -134,4 +134,13 @@ fn a_fit_that_a_rotation_releases_is_refused() {
             assert!((strain / exact - 1.0).abs() < 0.02, "{law} {size}: {strain:e} {exact:e}");
         }
     }
+}
+
+/// A disc that is given twice: no node of either side is inside the other one, which is its twin.
+#[test]
+fn bodies_at_one_place() {
+    let twice = DISCS.replace("center = [0.55, -0.1]", "center = [-0.55, 0.1]");
+    let problems = Setup::new(&case(&twice, &[""; 0])).start().err().unwrap();
+    assert!(problems[0].what.ends_with("overlap at the start"), "{problems:?}");
+    assert!(problems[0].why.starts_with("both \"left\" and \"right\" are at"), "{problems:?}");
 }
