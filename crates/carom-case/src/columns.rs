@@ -8,11 +8,13 @@ use super::{
     BodySpec, Case, ContactSpec, Fallback, ObstacleMotion, ProbeSpec, Quantity, SupportSpec, TieSpec,
 };
 
-/// Whether a quantity exists in a space of this dimension: its name has no axis beyond it.
+/// Whether a quantity exists in a space of this dimension: its name has no axis beyond it, or it is
+/// the normal stress or strain across the plane.
 pub(super) fn exists(of: Quantity, dimension: usize) -> bool {
     let axes = of.word().trim_start_matches("sigma_").trim_start_matches("strain_");
     let lacks = |axis: &str| axes.len() == 2 && axes.contains(axis);
-    !(dimension < 2 && (lacks("y") || of == Quantity::VonMises) || dimension < 3 && lacks("z"))
+    let is_across = matches!(of, Quantity::SigmaZz | Quantity::StrainZz) && dimension == 2;
+    is_across || !(dimension < 2 && (lacks("y") || of == Quantity::VonMises) || dimension < 3 && lacks("z"))
 }
 
 impl Case {

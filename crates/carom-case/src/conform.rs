@@ -217,7 +217,9 @@ impl Check {
         let near = suggest::nearest(word, free)
             .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
             .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
-        let elsewhere = format!("`{word}` is a key of {}", homes.join(", "));
+        let is_of_case = homes.first().is_some_and(|home| *home == "the case");
+        let above = if is_of_case { "; keys of the case stand above its first [table]" } else { "" };
+        let elsewhere = format!("`{word}` is a key of {}{above}", homes.join(", "));
         let help = match (near, homes.is_empty()) {
             (Some(near), true) => format!("did you mean `{near}`?"),
             (Some(near), false) => format!("did you mean `{near}`? ({elsewhere})"),

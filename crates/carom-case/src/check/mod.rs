@@ -448,7 +448,7 @@ impl<'a> Check<'a> {
                     let help = if d == 1 {
                         "use ux, vx, ax, sigma_xx, von_mises or det_f"
                     } else {
-                        "use a quantity without z"
+                        "use a quantity of the plane, sigma_zz or strain_zz"
                     };
                     self.add(path, format!("there is no quantity {name}"), why, help);
                 } else if probe.record[..j].contains(quantity) {

@@ -3,6 +3,7 @@
 use carom_run::model::Probe;
 
 use super::common::simulation;
+use super::rebound::record;
 
 const SQUARE: &str = r#"
 dimension = 2
@@ -37,4 +38,38 @@ fn a_corner_turned_over_has_j_but_no_stress() {
     let values = values_of(corner);
     assert!(values[0].is_nan() && (values[1] + 0.2).abs() < 1e-14 && values[2].abs() < 1e-14, "{values:?}");
     assert!(values_of(shared)[0].is_finite());
+}
+
+/// The stress across the plane: ν (σ_xx + σ_yy) of a linear body in plane strain, and nothing in
+/// plane stress.
+#[test]
+fn stress_across_the_plane() {
+    let text = r#"
+dimension = 2
+material = [{ name = "steel", law = "linear-elastic", density = 1.0, young = 1e4, poisson = 0.3 }]
+support = [{ on = ["plate.left"], fix = ["x"] }, { on = ["plate.bottom"], fix = ["y"] }]
+load = [{ on = ["plate.right"], traction = [2.0, 0.0] }, { on = ["plate.top"], traction = [0.0, -0.5] }]
+[[body]]
+name = "plate"
+material = "steel"
+element = "T6"
+mesh = { shape = "rectangle", min = [0, 0], max = [1, 1], cells = [1, 1] }
+[[probe]]
+name = "p"
+body = "plate"
+at = [0.4, 0.4]
+record = ["sigma_xx", "sigma_yy", "sigma_zz"]
+[time]
+end = 1.0
+step = 1.0
+scheme = { kind = "static" }
+"#;
+    for (plane, across) in [("strain", 0.3 * 1.5), ("stress", 0.0)] {
+        let run = record(text, &[&format!("plane={plane}")]);
+        let stress =
+            ["xx", "yy", "zz"].map(|axes| *run.column(&format!("p.sigma_{axes}")).unwrap().last().unwrap());
+        for (found, exact) in stress.iter().zip([2.0, -0.5, across]) {
+            assert!((found - exact).abs() < 1e-9, "{plane}: {stress:?}");
+        }
+    }
 }
