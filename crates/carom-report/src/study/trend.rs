@@ -237,8 +237,17 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     })
 }
 
-/// The labels of groups, without the settings that all of them have.
+/// The methods of groups, if each is of one, or their settings without those that all of them have.
 fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
+    let method = |group: &Refinement| {
+        let mut methods = group.arms.iter().map(|arm| study.manifest.arms[*arm].role.method.clone());
+        let first = methods.next()??;
+        methods.all(|other| other.as_ref() == Some(&first)).then_some(first)
+    };
+    let methods: Option<Vec<String>> = groups.iter().map(method).collect();
+    if let Some(methods) = methods.filter(|_| groups.len() > 1) {
+        return methods;
+    }
     let keys = Keys::of(groups.iter().map(|group| group.common.as_str()), common_time(study));
     let is_shared = |part: &&str| {
         groups.len() > 1 && groups.iter().all(|group| group.common.split(", ").any(|other| other == *part))
