@@ -25,11 +25,9 @@ pub(crate) struct Found {
 /// The pairs of a model at positions `y`, from the other run and its last state.
 pub(crate) fn found(case: &Case, model: &Model, y: &[f64], old: &Case, state: &State) -> Found {
     let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new() };
+    let before = counterparts(case, model, y, old, state);
     for (own, (spec, contact)) in case.contacts.iter().zip(&model.contacts).enumerate() {
-        let alike = |other: &&usize| is_alike(&old.contacts[**other], spec);
-        let all: Vec<usize> = (0..old.contacts.len()).collect();
-        let named = all.iter().filter(alike).find(|other| old.contacts[**other].name == spec.name);
-        let Some(&before) = named.or_else(|| all.iter().find(alike)) else {
+        let Some(before) = before[own] else {
             found.pairs.push(Vec::new());
             continue;
         };
@@ -52,6 +50,31 @@ pub(crate) fn found(case: &Case, model: &Model, y: &[f64], old: &Case, state: &S
             found.slid.extend(rubs.map(|(p, pair)| ((own, p), pair.tangential.friction_state)));
         }
         found.pairs.push(pairs);
+    }
+    found
+}
+
+/// For each contact that of the other run which goes on in it: of those that are alike one of the
+/// same name, else that of which most pairs touch. None goes on twice.
+fn counterparts(case: &Case, model: &Model, y: &[f64], old: &Case, state: &State) -> Vec<Option<usize>> {
+    let mut found = vec![None; case.contacts.len()];
+    let alike = |own: usize, found: &[Option<usize>]| -> Vec<usize> {
+        let is_alike = |k: &usize| is_alike(&old.contacts[*k], &case.contacts[own]);
+        (0..old.contacts.len()).filter(|k| !found.contains(&Some(*k))).filter(is_alike).collect()
+    };
+    for own in 0..found.len() {
+        let name = &case.contacts[own].name;
+        found[own] = alike(own, &found).into_iter().find(|k| old.contacts[*k].name == *name);
+    }
+    for own in 0..found.len() {
+        let touch = |k: &usize| {
+            let pairs = state.pairs.get(*k).map_or(&[][..], Vec::as_slice);
+            let pairs = still_closed(model, &model.contacts[own], y, pairs);
+            pairs.iter().filter(|pair| pair.active).count()
+        };
+        if found[own].is_none() {
+            found[own] = alike(own, &found).into_iter().rev().max_by_key(touch);
+        }
     }
     found
 }
@@ -81,7 +104,7 @@ fn still_closed(model: &Model, contact: &Contact, y: &[f64], pairs: &[Pair]) -> 
         rows.clear();
         let is_measured = contact.kinematics.measure(&mut pair.clone(), y, &mut rows).is_ok();
         if !(is_measured && rows.row(0).gap.abs() <= TOUCHES * model.scale) {
-            *pair = Pair { joint: pair.joint, ..Pair::open(pair.node, pair.facet, pair.xi) };
+            *pair = Pair { eta: pair.eta, joint: pair.joint, ..Pair::open(pair.node, pair.facet, pair.xi) };
         }
     }
     pairs

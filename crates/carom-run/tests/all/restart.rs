@@ -397,6 +397,57 @@ mu = 0.3
     }
 }
 
+/// Two planes press a corner of a block. Where both have other names and have moved, each goes on
+/// with its own pairs.
+#[test]
+fn contacts_go_on_under_other_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |contacts: &str, time: &str, initial: &str| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 300.0, poisson = 0.3 }}]
+[[body]]
+name = "block"
+material = "m"
+element = "T6"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [0.6, 0.5], cells = [4, 3] }}
+[[support]]
+on = ["block.top"]
+fix = ["y"]
+[[support]]
+on = ["block.right"]
+fix = ["x"]
+{contacts}
+{time}
+{initial}
+"#
+        )
+    };
+    let plane = |name: &str, at: &str, normal: &str, motion: &str| {
+        let primary = format!("{{ plane = {{ point = {at}, normal = {normal} }}{motion} }}");
+        format!("[[contact]]\nname = \"{name}\"\nsecondary = \"block.skin\"\nprimary = {primary}\n")
+    };
+    let presses = [
+        plane("floor", "[0.0, 0.0]", "[0.0, 1.0]", ", motion = { y = \"0.02*t\" }"),
+        plane("wall", "[0.0, 0.0]", "[1.0, 0.0]", ", motion = { x = \"0.01*t\" }"),
+    ];
+    let load = text(&presses.concat(), &time(1.0, 0.1, r#"{ kind = "static" }"#), "");
+    let initial = initial_state(&load, &folder.path().join("pressed"));
+    let pressed = finish(simulation(&load, &[""; 0]));
+    let [floor, wall] = pressed.state().contact_forces[..] else { panic!() };
+    assert!(floor[1] > 1.0 && wall[0] > 1.0, "{floor:?} {wall:?}");
+    let rests = [plane("a", "[0.01, 0.0]", "[1.0, 0.0]", ""), plane("b", "[0.0, 0.02]", "[0.0, 1.0]", "")];
+    let scheme = r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#;
+    let mut run = simulation(&text(&rests.concat(), &time(0.1, 0.01, scheme), &initial), &[""; 0]);
+    for _ in 0..3 {
+        let [now_wall, now_floor] = run.state().contact_forces[..] else { panic!() };
+        assert!((now_wall[0] - wall[0]).abs() < 1e-6 * wall[0], "{now_wall:?} {wall:?}");
+        assert!((now_floor[1] - floor[1]).abs() < 1e-6 * floor[1], "{now_floor:?} {floor:?}");
+        run.step().unwrap();
+    }
+}
+
 /// A state of another model is refused with the difference, wherever it is given.
 #[test]
 fn states_of_other_models() {
