@@ -15,8 +15,8 @@
 //! Where contact begins, F_{s+1} is an impulse over Δt, of which the mean of both ends takes one
 //! half, as the velocities do, and a projection replaces it by the steady force. Friction with its
 //! mean in the balance, 1 − α_f of F_{s+1}, would count impulses up to twice. Friction in load
-//! steps and that on springs, which have no such impulses, works with its mean in the balance: it
-//! is not positive then where slip begins or ends.
+//! steps and that on springs, which have no such impulses, works with its mean in the balance, so
+//! that its work is not positive where slip begins or ends.
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
@@ -145,10 +145,11 @@ pub(crate) fn at_both_ends(increment: &[f64], before: &[f64], now: &[f64]) -> f6
     increment.iter().zip(forces).map(|(moved, (before, now))| 0.5 * moved * (before + now)).sum()
 }
 
-/// Whether friction is a constraint of a motion: not in load steps, and not on springs.
+/// Whether all friction is a constraint of a motion: not in load steps, and not on springs. The
+/// work of friction is known for all contacts together.
 fn friction_is_constraint(equations: &Equations) -> bool {
-    let rubs = equations.model.contacts.iter().filter(|contact| contact.friction.is_some());
-    !equations.stage.is_static() && rubs.into_iter().all(|contact| contact.interface.is_constraint())
+    let mut rubs = equations.model.contacts.iter().filter(|contact| contact.friction.is_some());
+    !equations.stage.is_static() && rubs.all(|contact| contact.interface.is_constraint())
 }
 
 /// Work of friction with its mean in the balance of a step.

@@ -8,11 +8,12 @@
 //! [(1/(1 − ν) + (a/b)²/2)/(1 + ν) − 1] / n²        in plane stress; in plane strain with ν/(1 − ν)
 //! ```
 //!
-//! because sides that stay straight shear, G (κx)²/2, where the cell is bent by κ, and leave no
-//! curvature across. Boxes of Hex8 are as stiff, and those of Tet4 stiffer. Length L and thickness
-//! h of a body in the plane are the roots of x² − (P/2) x + A = 0, with its area A and its
-//! perimeter P, and numbers of cells along them the same with the counts of cells and of facets:
-//! exact for a rectangle, to first order for a strip or ring that is bent.
+//! (with a mean dilatation 1 in place of 1/(1 − ν)), because sides that stay straight shear, G
+//! (κx)²/2, where the cell is bent by κ, and leave no curvature across. Boxes of Hex8 are as stiff,
+//! and those of Tet4 stiffer. Length L and thickness h of a body in the plane are the roots of x² −
+//! (P/2) x + A = 0, with its area A and its perimeter P, and numbers of cells along them the same
+//! with the counts of cells and of facets: exact for a rectangle, to first order for a strip or
+//! ring that is bent.
 
 use carom_case::{BodySpec, Case, MaterialSpec, MeshSpec, Plane, Volumetric};
 use carom_mechanics::model::{BodyInstance, Model};
@@ -107,7 +108,8 @@ struct Across {
     cells: [f64; 2],
 }
 
-/// The roots of x² − (p/2) x + a = 0, the larger one first.
+/// The roots of x² − `half` x + `product` = 0, the larger one first; of a disc, which has none,
+/// equal ones.
 fn roots(half: f64, product: f64) -> [f64; 2] {
     let root = (0.25 * half * half - product).max(0.0).sqrt();
     [0.5 * half + root, 0.5 * half - root]
@@ -135,13 +137,14 @@ impl Across {
         let poisson = case.materials_of(spec).into_iter().map(ratio).reduce(f64::max)?;
         let is_strain = spec.element.dimension() == 2 && case.plane == Plane::Strain;
         let poisson = if is_strain { poisson / (1.0 - poisson) } else { poisson };
-        // A mean dilatation does not resist the change of volume of bending.
+        // The change of volume in bending has no mean in a cell: a mean dilatation lets it go.
         let averages = spec.volumetric == Volumetric::Mean;
         let [length, thickness] = self.sizes;
         let [along, across] = self.cells;
         let aspect = (length / along) / (thickness / across);
         let sheared = 0.5 * aspect * aspect / (1.0 + poisson);
-        let squeezed = if averages { 0.0 } else { 1.0 / (1.0 - poisson * poisson) - 1.0 };
+        let across_it = if averages { 1.0 } else { 1.0 / (1.0 - poisson) };
+        let squeezed = across_it / (1.0 + poisson) - 1.0;
         let excess = (sheared + squeezed) / (across * across);
         let is_bent = length >= SLENDER * thickness && excess > TOO_STIFF;
         let by = if spec.element == Element::Tet4 { "more than" } else { "about" };
@@ -170,18 +173,13 @@ fn told(element: Element, slenderness: f64, across: f64, by: &str, excess: f64) 
 
 fn triangles_across(part: &BodyInstance) -> Option<String> {
     let mesh = part.body.mesh();
-    let area = mesh.area();
-    let skin = part.skin();
     let half = 0.5 * perimeter(part);
-    // A disc has no such roots.
-    let root = (0.25 * half * half - area).sqrt();
-    let length = 0.5 * half + root;
-    let thickness = 0.5 * half - root;
-    if root.is_nan() || length < SLENDER * thickness {
+    let [length, thickness] = roots(half, mesh.area());
+    if length < SLENDER * thickness {
         return None;
     }
     // Two triangles make a cell of the length of a facet.
-    let facet = 2.0 * half / skin.len() as f64;
+    let facet = 2.0 * half / part.skin().len() as f64;
     let across = 0.5 * mesh.cell_count() as f64 * facet / length;
     let excess = 3.0 / (across * across);
     (excess > TOO_STIFF).then(|| told(Element::T3, length / thickness, across, "about", excess))

@@ -148,7 +148,7 @@ pub const WARNINGS: [Entry; 29] = [
     Entry {
         id: "long-step",
         why: "the contact force of this step is an impulse divided by Δt: a shorter step changes the largest one by a \
-              fifth or more, and the duration and the rebound of an impact that takes few steps",
+              fifth or more. Duration and rebound of an impact that takes few steps change, too",
         advice: "a shorter step, until the numbers that you need no longer change",
         rule: Rule::Record(steps::long_step),
     },

