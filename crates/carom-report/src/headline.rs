@@ -146,9 +146,9 @@ impl Facts<'_> {
 
     fn mean_force(&self) -> Option<Number> {
         let duration = self.metric("contact_duration")?;
-        let impulses =
-            ["impulse_x", "impulse_y", "impulse_z"].into_iter().filter_map(|name| self.metric(name));
-        let impulse = impulses.fold(0.0, f64::hypot);
+        let axes = ["impulse_x", "impulse_y", "impulse_z"].into_iter();
+        // None of contacts that do not count as one.
+        let impulse = axes.filter_map(|name| self.metric(name)).reduce(f64::hypot)?.abs();
         Some(Number::new("Mean contact force", self.force(impulse / duration), "impulse over duration"))
     }
 
