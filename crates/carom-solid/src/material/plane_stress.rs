@@ -7,11 +7,12 @@
 //! respect to the stretch is P₃₃ = 0. Cauchy stress is P Fᵀ/J with the three-dimensional J; the
 //! force on the deformed sheet of changed thickness is that of P on the undeformed one.
 
-use carom_algebra::{Mat, Vector};
+use carom_algebra::{Four, Mat, Vector};
 
 use super::kinematics::excess_det;
 use super::past::Past;
 use super::{LinearElastic, Material, NeoHookean, NotPositive, SaintVenantKirchhoff};
+use crate::points::{get, lanes};
 
 /// A law that admits plane stress.
 pub trait Thickness: Material<3> {
@@ -177,6 +178,11 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
         let virgin = past.memory.is_empty();
         let across = if virgin { self.0.excess_stretch(h) } else { self.0.excess_stretch_after(h, past) };
         across.map_or(plane, |across| plane * (1.0 + across))
+    }
+
+    fn volume_ratio_of_four(&self, h: &Mat<2, Four>) -> Four {
+        let points = lanes(h);
+        Four(std::array::from_fn(|l| self.volume_ratio(&get(&points, l), &Past::default())))
     }
 }
 
