@@ -60,7 +60,7 @@ impl Axis {
         // Differences of larger numbers overflow; steps below 1e-290 underflow.
         (low, high) = (low.max(-1e300), high.min(1e300));
         let size = low.abs().max(high.abs());
-        // What changes by less is round-off of equilibrium.
+        // Values that differ by less than this share are the same to round-off.
         if high - low <= 1e-10 * size || high - low < 1e-290 {
             let half = if size < 1e-280 { 1.0 } else { 0.1 * size };
             (low, high) = (low - half, high + half);

@@ -127,8 +127,8 @@ impl Facts<'_> {
         ))
     }
 
-    /// Of an impact a mean: the force of single steps has no limit. None if the forces of all nodes
-    /// cancel, as around a ring.
+    /// The largest contact force; of an impact its mean over a short time, because that of single
+    /// steps does not converge. None if the forces of all nodes cancel, as around a ring.
     fn peak_force(&self) -> Option<Number> {
         let forces = metrics::contact_force(self.run);
         let row = (0..forces.len()).max_by(|a, b| forces[*a].total_cmp(&forces[*b]))?;

@@ -30,7 +30,7 @@ impl<'a> Given<'a> {
         Self::of_changed(run, &run.history)
     }
 
-    /// Of a run, with other values of its history.
+    /// Input of the metrics of a run whose history has other values, as averaged ones.
     pub(super) fn of_changed(run: &'a Run, history: &'a History) -> Self {
         Self { run: Some(run), ..Self::of(history) }
     }

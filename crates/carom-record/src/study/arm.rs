@@ -64,7 +64,8 @@ pub fn scalar(arm: &Arm, key: &str) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// What a key counts, if a mesh becomes finer as it grows: cells, layers of cells, or refinements.
+/// The last part of a key that counts cells, layers of cells or refinements: the mesh becomes finer
+/// as its value grows. None of other keys.
 pub fn count(key: &str) -> Option<&str> {
     let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
     ["cells", "layers", "refine"].contains(&last).then_some(last)

@@ -9,6 +9,7 @@ mod belts;
 mod common;
 mod conserving_contact;
 mod contact_pressure;
+mod continued;
 mod corners;
 mod damage;
 mod dependent_gaps;

@@ -215,7 +215,7 @@ pub trait Material<const D: usize>: Send + Sync {
         1.0 + excess_det(h)
     }
 
-    /// The same at four points, of a law without memory.
+    /// [`volume_ratio`](Self::volume_ratio) at four points, of a law without memory.
     #[inline(always)]
     fn volume_ratio_of_four(&self, h: &Mat<D, Four>) -> Four {
         Four::of(1.0) + excess_det(h)
