@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks `carom schema` against the cases and studies of the repository.
 
-    scripts/check_schema.py target/release/carom        needs jsonschema (pip install jsonschema)
+    scripts/check_schema.py target/release/carom        needs jsonschema-rs (pip)
 
 An independent validator must confirm that the output is a JSON Schema, that it accepts every case
 and study, and that it rejects every misspelt key. `cargo test` checks that the reader does the
@@ -15,15 +15,15 @@ import subprocess
 import sys
 import tomllib
 
-import jsonschema
+import jsonschema_rs
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def validator(program, *options):
     schema = json.loads(subprocess.run([program, "schema", *options], check=True, capture_output=True, text=True).stdout)
-    jsonschema.Draft202012Validator.check_schema(schema)
-    return jsonschema.Draft202012Validator(schema)
+    jsonschema_rs.meta.validate(schema)
+    return jsonschema_rs.Draft202012Validator(schema)
 
 
 def places(value, path=()):
@@ -58,7 +58,7 @@ def main(program):
     for path in sorted([*ROOT.glob("cases/*/*.toml"), *ROOT.glob("crates/carom/templates/*.toml"), *ROOT.glob("docs/book/examples/*.toml")]):
         document = tomllib.loads(path.read_text())
         kind = kinds["case" in document]
-        errors = [f"{error.message} at {error.json_path}" for error in kind.iter_errors(document)]
+        errors = [f"{error.message} at {error.instance_path}" for error in kind.iter_errors(document)]
         assert not errors, f"{path}: {errors}"
         files += 1
         for place in places(document):

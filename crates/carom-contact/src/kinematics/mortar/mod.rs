@@ -33,6 +33,9 @@ use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
 
+/// Share of forces that is round-off in their sum.
+const ROUND_OFF: f64 = 1e-9;
+
 impl Mortar {
     /// Share of the area of a multiplier that faces the primary in the reference configuration.
     fn cover_at_start(&self, multiplier: usize) -> f64 {
@@ -51,6 +54,25 @@ impl Mortar {
         let depth = |place: usize| -self.sides.signed_distance(place, &self.reference).unwrap_or(0.0);
         let nodes = self.sides.secondary().iter().enumerate();
         nodes.map(move |(place, &node)| (node, depth(place).max(0.0)))
+    }
+
+    /// Whether the forces of a row add up to zero, with their moments, as those between two sides
+    /// do; an obstacle has no nodes to act on.
+    fn is_balanced(&self, nodes: &[usize], slopes: &[Vector<2>], y: Places) -> bool {
+        let Opposite::Side(_) = &self.opposite else { return true };
+        let origin = y.at(nodes[0]);
+        let mut sum = Vector::ZERO;
+        let mut moment = 0.0;
+        let mut size = 0.0;
+        let mut arm: f64 = 0.0;
+        for (&node, slope) in nodes.iter().zip(slopes) {
+            let place = y.at(node) - origin;
+            sum += *slope;
+            moment += place.turned_right().dot(slope);
+            size += slope.norm();
+            arm = arm.max(place.norm());
+        }
+        sum.norm() <= ROUND_OFF * size && moment.abs() <= ROUND_OFF * size * arm
     }
 
     /// Moves the recorded contact point of a pair to that of the sample on the middle facet of its
@@ -163,6 +185,11 @@ impl Kinematics for Mortar {
             gap += sample.share * sample.distance();
             sample.gradient(stencil.adder(self, sample, &mut slopes));
         }
+        debug_assert!(
+            self.is_balanced(&stencil.nodes, &slopes, Places::new(y, 2)),
+            "mortar row {}",
+            pair.node
+        );
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
         Ok(())
     }
