@@ -195,6 +195,10 @@ const IMPACTS: &[(&[&str], &[&str])] = &[
     (&["body.cylindr.element=T6"], &["no `body` is named `cylindr`", "did you mean `body.cylinder`?"]),
     (&["expect=[{ what = \"min A.ux\", at_most = 0 }]"], &["no column `A.ux`", "did you mean `A.uy`?"]),
     (&["expect=[{ what = \"at 0.9 A.uy\", at_most = 0 }]"], &["the time 0.9 is outside the run"]),
+    (
+        &["expect=[{ what = \"contact_end\", after = 0.2, at_most = 0 }]"],
+        &["`after = 0.2` cannot be used with the metric `contact_end`"],
+    ),
     (&["expect=[{ what = \"lowest A.uy\", at_most = 0 }]"], &["is not a valid quantity"]),
     (
         &["expect=[{ what = \"restitutoin\", at_most = 1 }]"],

@@ -87,6 +87,10 @@ impl Question {
     /// What is missing, or why there is no value.
     pub fn answer(&self, records: &dyn Records, window: Window) -> Result<f64, Reason> {
         let value = self.value(&mut |quantity| match quantity {
+            Quantity::Metric(name, _) if window != Window::default() => {
+                Err(format!("`{name}` is a metric of the whole run, not of the rows between two times")
+                    .into())
+            }
             Quantity::Metric(name, arm) => records.metric(name, arm.as_deref()),
             Quantity::Reduced(form, series) => {
                 let (times, values) = series.rows(records, window)?;
