@@ -431,8 +431,8 @@ pub struct BodySpec {
     /// Gravitational acceleration: numbers, or formulas in t. Default: zero.
     #[key(Formulas(IN_TIME), unit = "length/time²", optional = "[0.0, -9.81]")]
     pub gravity: Vec<FormulaSpec>,
-    /// Initial velocity: numbers or formulas in X, Y, Z, or the table of a rigid-body motion.
-    /// Default: zero.
+    /// Initial velocity: numbers or formulas in X, Y, Z, or the table of a rigid-body motion from
+    /// where the body is at t = 0. Default: zero.
     #[key(
         FormulasOr(IN_SPACE, &Velocity::TABLE),
         unit = "length/time",
@@ -483,7 +483,8 @@ impl BodySpec {
     }
 }
 
-/// Initial velocity of a rigid-body motion: linear + angular × (X − about).
+/// Initial velocity of a rigid-body motion: linear + angular × (x − about), with x the place of a
+/// point at t = 0.
 #[derive(Keys)]
 #[keys(name = "velocity")]
 struct Velocity {
@@ -518,6 +519,7 @@ fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
     if v.table.get("velocity").is_some_and(|node| node.table().is_none()) {
         return v.get("velocity");
     }
+    let position: Option<Vec<FormulaSpec>> = if v.has("position") { v.get("position")? } else { None };
     let v = v.at("velocity")?;
     let Velocity { linear, angular, about } = Velocity::read(&v)?;
     if linear.len() != dimension || angular.len() != 3 {
@@ -535,12 +537,24 @@ fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
         return v.wrong("angular", "the rotation has no centre", "a body rotates about a point", help);
     }
     let about = about.filter(|about| about.len() == dimension)?;
-    // Component i of linear + ω × (X − about), without the terms that vanish.
+    let place = match position {
+        None => ["X", "Y", "Z"][..dimension].iter().map(ToString::to_string).collect(),
+        Some(position) if position.iter().any(|place| place.function().is_some()) => {
+            let why = "the velocity of a rotating point is written as a formula of its place";
+            let help = "give `position` as formulas, or `velocity` as functions";
+            return v.wrong("angular", "`position` is a function of the program", why, help);
+        }
+        Some(position) if position.len() == dimension => {
+            position.iter().map(|place| format!("({place})")).collect::<Vec<String>>()
+        }
+        Some(_) => return None,
+    };
+    // Component i of linear + ω × (x − about), without the terms that vanish.
     let component = |i: usize| {
         let [j, k] = [(i + 1) % 3, (i + 2) % 3];
         let term = |sign: &str, omega: f64, axis: usize| {
             let exists = axis < dimension && omega != 0.0;
-            let arm = || format!(" {sign} {omega:?}*({} - {:?})", ["X", "Y", "Z"][axis], about[axis]);
+            let arm = || format!(" {sign} {omega:?}*({} - {:?})", place[axis], about[axis]);
             exists.then(arm).unwrap_or_default()
         };
         format!("{:?}{}{}", linear[i], term("+", angular[j], k), term("-", angular[k], j))

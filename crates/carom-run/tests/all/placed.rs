@@ -101,3 +101,26 @@ fn bodies_must_not_overlap_where_they_start() {
     // No overlap with the primary out of the way.
     assert!(problems(&[LOWER, "body.anvil.position=[\"X\", \"1.1*(Y + 0.5) - 0.6\"]"]).is_empty());
 }
+
+/// A block of 2 × 1 that is turned by its positions and spins about its centre there: no momentum, and
+/// ρ A (2² + 1²)/12 · ω of angular momentum.
+#[test]
+fn a_body_spins_about_a_point_where_its_positions_are() {
+    let text = r#"
+dimension = 2
+material = [{ name = "rubber", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+time = { end = 1e-3, step = 1e-3, scheme = { kind = "chung-hulbert", rho_inf = 0.5 } }
+[[body]]
+name = "block"
+material = "rubber"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [2.0, 1.0], cells = [4, 2] }
+position = ["3 - Y", "X + 1"]
+velocity = { angular = 2.0, about = [2.5, 2.0] }
+"#;
+    let sim = simulation(text, &[""; 0]);
+    let momenta = sim.model().momenta(&sim.state().y, &sim.state().v);
+    assert!(momenta.linear.iter().all(|component| component.abs() < 1e-14), "{momenta:?}");
+    let exact = 2.0 * 2.0 * (4.0 + 1.0) / 12.0;
+    assert!((momenta.angular[2] - exact).abs() < 1e-13, "{momenta:?}");
+}
