@@ -358,8 +358,9 @@ impl Closed {
                 let law = laws[i]?;
                 let traction = length(motion.tangential[i]);
                 // A tensile impulse takes back what the step did in excess, and so does friction
-                // of a pair that stuck in it.
-                let takes_back = motion.normal[i] > 0.0 && way.friction_state == FrictionState::Stick;
+                // of a pair that stuck in it. A limited traction has no impulse to take back.
+                let sticks = way.friction_state == FrictionState::Stick;
+                let takes_back = motion.normal[i] > 0.0 && sticks && !law.is_none();
                 let cone = if takes_back { traction } else { law.grip(motion.normal[i].abs()) };
                 // What is no slip to round-off has no direction.
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);

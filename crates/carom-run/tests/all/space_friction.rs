@@ -357,3 +357,53 @@ fn every_node_of_a_spinning_ball_has_the_force_of_slip() {
     }
     assert!(slips > 25, "{slips}");
 }
+
+/// A limited traction has no impulse: nodes that close on a line along which a plane motion is
+/// extruded go on alike, and none is stopped by a tensile impulse of the projection.
+#[test]
+fn a_limited_traction_leaves_what_is_extruded_uniform() {
+    let text = r#"
+dimension = 3
+[[material]]
+name = "m"
+law = "yeoh"
+density = 1.0
+c10 = 160.0
+c20 = -3.0
+c30 = 2.0
+bulk = 900.0
+[[body]]
+name = "block"
+material = "m"
+element = "Hex27"
+mesh = { shape = "extrusion", of = { shape = "rectangle", min = [-0.6, 0.0213], max = [0.6, 0.42], cells = [5, 2] }, height = 1.0, layers = 1 }
+velocity = { linear = [0.7, -1.0, 0.0], angular = [0.0, 0.0, 0.8], about = [0.0, 0.3, 0.0] }
+gravity = ["0.4*sin(30*t)", "-5+t", "0"]
+[[support]]
+on = ["block.base", "block.lid"]
+fix = ["z"]
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
+mu = 0.3
+mu_dynamic = 0.15
+decay = 1.5
+shear = 3.0
+[time]
+end = 0.03
+step = 0.002
+scheme = { kind = "newmark", rho_inf = 1.0 }
+energy_guard = false
+"#;
+    let sim = finish(simulation(text, &[""; 0]));
+    let x = sim.model().reference.as_chunks::<3>().0;
+    let v = sim.state().v.as_chunks::<3>().0;
+    assert!(sim.state().pairs[0].iter().any(|pair| pair.active));
+    for (first, other) in (0..x.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
+        if (x[first][0] - x[other][0]).hypot(x[first][1] - x[other][1]) < 1e-12 {
+            let apart = (v[first][0] - v[other][0]).hypot(v[first][1] - v[other][1]);
+            assert!(apart < 1e-8, "{:?} {:?}: {apart:e}", x[first], x[other]);
+        }
+    }
+}
