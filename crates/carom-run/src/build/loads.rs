@@ -1,5 +1,7 @@
 //! The loads of a model; names and formulas were checked when the case was read.
 
+use std::collections::BTreeMap;
+
 use carom_case::{Case, LoadKind, LoadSpec, Problem};
 use carom_formula::Formula;
 use carom_mechanics::model::{Amplitude, BodyInstance, InBody, Load, Loads, Manufactured};
@@ -38,8 +40,10 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
                 material.as_ref().and_then(|material| names.iter().position(|name| name == material));
             loads.add_body_force(load(spec, InBody { part, region }, value.clone()));
         }
+        let mut taken = BTreeMap::new();
         for (j, name) in spec.sides().iter().enumerate() {
-            match loaded(case, parts, name, &format!("load[{k}].on[{j}]")) {
+            let path = format!("load[{k}].on[{j}]");
+            match loaded(case, parts, name, &path).and_then(|side| once(side, name, &mut taken, &path)) {
                 Ok(side) if matches!(spec.kind, LoadKind::Pressure { .. }) => {
                     loads.add_pressure(load(spec, side, value.clone()));
                 }
@@ -49,6 +53,25 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
         }
     }
     loads
+}
+
+/// A side, if it has no facet of the sides before it; `taken`: their facets.
+fn once<'a>(
+    side: LoadedSide,
+    name: &'a str,
+    taken: &mut BTreeMap<Vec<usize>, &'a str>,
+    path: &str,
+) -> Result<LoadedSide, Problem> {
+    for facet in side.facets() {
+        let mut nodes = facet.clone();
+        nodes.sort_unstable();
+        if let Some(other) = taken.insert(nodes, name) {
+            let what = format!("\"{name}\" has facets of \"{other}\"");
+            let help = "name each part of the boundary once; the loads of two [[load]] tables add up";
+            return Err(Problem::new(path, what, "the load would act on them twice", help));
+        }
+    }
+    Ok(side)
 }
 
 fn loaded(case: &Case, parts: &[BodyInstance], name: &str, path: &str) -> Result<LoadedSide, Problem> {

@@ -442,3 +442,16 @@ time = { end = 40.0, step = 0.01, scheme = { kind = "chung-hulbert", rho_inf = 0
     let ledger = finish(simulation(text)).into_state().ledger;
     assert!(ledger.dissipation().abs() < 1e-3 * ledger.largest, "{ledger:?}");
 }
+
+#[test]
+fn a_facet_is_loaded_once() {
+    let load = "[[load]]\non = [\"bar.left\", \"bar.right\", \"bar.right\"]\ntraction = [1.0]\n";
+    let text = format!(
+        "dimension = 1\nmaterial = [{{ name = \"unit\", law = \"linear-elastic\", density = 1.0, young = 1.0, poisson = 0.0 }}]\n{}{load}{}",
+        body(2, "lumped"),
+        time(1.0, 0.1, r#"{ kind = "bdf2" }"#)
+    );
+    let problems = Setup::new(&common::case(&text, &[""; 0])).build().err().unwrap();
+    assert_eq!(problems[0].path, "load[0].on[2]");
+    assert!(problems[0].what.contains("\"bar.right\" has facets of \"bar.right\""), "{}", problems[0].what);
+}
