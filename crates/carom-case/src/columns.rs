@@ -134,8 +134,7 @@ impl<'a> Recorded<'a> {
         if self.fallback != Fallback::None {
             columns.count("fallbacks", "grid steps that the fallback took since the previous row");
         }
-        let what =
-            "depth of the deepest node of either side of a contact in the other body, since the previous row";
+        let what = "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges, since the previous row";
         columns.add("penetration", &label.length, what);
         let what =
             "the same of the nodes that the contact constrains: secondary nodes and corners of the primary";

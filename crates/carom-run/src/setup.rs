@@ -205,8 +205,8 @@ fn unfit(kernel: &dyn Kernel, case: &Case) -> Option<Problem> {
     None
 }
 
-/// `floor`: energy that counts as none.
-fn grid(case: &Case, floor: f64) -> Grid {
+/// The grid of times of a case; `floor`: energy that counts as none.
+pub(crate) fn grid(case: &Case, floor: f64) -> Grid {
     // Load steps create no energy: the difference between works and energies is the error of a sum
     // over few steps.
     let guard = case.time.energy_guard.filter(|_| !case.time.scheme.is_static());

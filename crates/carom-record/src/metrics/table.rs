@@ -212,7 +212,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Length,
         "max (0, −g)",
         TABLES,
-        "depth of the deepest node of either side of a contact in the other body, constrained by the contact or not (column penetration_secondary: constrained nodes)",
+        "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges, constrained by the contact or not (column penetration_secondary: constrained nodes)",
         |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
     ),
     d(
@@ -220,7 +220,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Length,
         "mean of max (0, −g) over the rows with active > 0",
         OWN,
-        "depth of the deepest node of either side of a contact in the other body, averaged over the rows in contact",
+        "depth of the deepest node of either side of a contact in the other body, as in the column penetration, averaged over the rows in contact",
         force::mean_penetration,
     ),
 ];

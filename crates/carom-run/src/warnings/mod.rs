@@ -9,6 +9,7 @@ mod courses;
 mod elements;
 mod extent;
 mod found;
+mod loads;
 mod masses;
 mod meshes;
 mod obstacles;
@@ -51,7 +52,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 29] = [
+pub const WARNINGS: [Entry; 30] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -92,6 +93,13 @@ pub const WARNINGS: [Entry; 29] = [
               Poisson's ratio is too close to 1/2",
         advice: "consistent units, as mm, s, t and MPa, or mm, ms, g and MPa",
         rule: Rule::Model(waves::wave_speed),
+    },
+    Entry {
+        id: "unresolved-load",
+        why: "a step knows a load at its ends alone: of a blow between two ends the body feels nothing, and of a \
+              short one a part that depends on the step",
+        advice: "a step a tenth as long as the load lasts, or rows of its table at ends of steps",
+        rule: Rule::Model(loads::unresolved_load),
     },
     Entry {
         id: "short-run",

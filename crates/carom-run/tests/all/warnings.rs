@@ -701,3 +701,28 @@ scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
     }
     assert!(ids(text, &["body.right.place.shift=[1e-11, 0.0]"]).contains(id));
 }
+
+/// By the trapezoidal rule sin ωt has the integral (x cot x) of the exact one over each step, with
+/// x = ωh/2: 0.877 for ωh = 1.2, 0.915 for 1.
+#[test]
+fn loads_that_steps_do_not_resolve() {
+    let found_in = |load: &str| {
+        let load = format!("load=[{{ on = [\"bar.right\"], {load} }}]");
+        let sets = ["body.bar.position=[\"X\"]", "time.step=1e-2", &load];
+        let all = found(STRETCHED, &sets).into_iter();
+        all.filter(|(id, _)| id == "unresolved-load").map(|(_, what)| what).collect::<Vec<_>>()
+    };
+    for resolved in ["traction = [2.0]", "traction = [\"sin(100*t)\"]", "traction = [\"if(t > 0.1, 1, 0)\"]"]
+    {
+        assert_eq!(found_in(resolved), [""; 0], "{resolved}");
+    }
+    let fast = found_in("traction = [\"sin(120*t)\"]");
+    assert!(fast[0].contains(" by 12.") || fast[0].contains(" by 13."), "{fast:?}");
+    let blow = found_in("traction = [\"if(t > 0.052 && t < 0.058, 1, 0)\"]");
+    assert!(blow[0].contains("by 100 % of all, most in the step before t = 0.0600"), "{blow:?}");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("blow.csv");
+    std::fs::write(&file, "t,value\n0,0\n0.05510,0\n0.05511,1\n0.05512,0\n1,0\n").unwrap();
+    let blow = found_in(&format!("traction = [1.0], table = {:?}", file.display().to_string()));
+    assert!(blow[0].contains("by 100 %"), "{blow:?}");
+}

@@ -1,0 +1,130 @@
+//! Warning about loads that vary within steps. A step knows a load f at its ends alone, and gives
+//! the body the impulse h (f_n + f_{n+1})/2 in place of ∫f dt: nothing of a blow between two ends.
+//! Compared are
+//!
+//! ```text
+//! Σ_n |∫f dt − h (f_n + f_{n+1})/2|,      Σ_n ∫|f| dt
+//! ```
+//!
+//! For f = sin ωt the quotient of the two is (ωh)²/12.
+
+use carom_case::{Case, FormulaSpec, LoadKind, LoadSpec, TableSpec};
+use carom_formula::Formula;
+use carom_mechanics::Grid;
+use carom_mechanics::model::Model;
+
+use super::found::{Found, short};
+use crate::setup;
+
+/// Share of a load's impulse by which the impulses of the steps may be wrong.
+const ALLOWED: f64 = 0.1;
+/// Parts of a step at whose ends a load is known, in short runs.
+const PARTS: u64 = 32;
+/// Instants at which a load is asked for, where that leaves two for a step.
+const INSTANTS: u64 = 400_000;
+
+const TIME: &str = "t";
+
+pub(super) fn unresolved_load(case: &Case, _: &Model) -> Vec<Found> {
+    if case.time.scheme.is_static() {
+        return Vec::new();
+    }
+    let grid = setup::grid(case, 0.0);
+    let time = case.labels().time;
+    let mut found = Vec::new();
+    let mut examine = |place: String, course: &Course| {
+        if let Some(missed) = course.missed(&grid).filter(|missed| missed.share > ALLOWED) {
+            let what = format!(
+                "the impulses of the steps differ from those of the load by {} % of all, most in the step before t = {} {time}",
+                short(100.0 * missed.share),
+                short(missed.time),
+            );
+            found.push(Found::at(place, what));
+        }
+    };
+    for load in &case.loads {
+        examine(format!("load \"{}\"", load.label()), &Course::of(load));
+    }
+    for body in &case.bodies {
+        let course = Course { components: in_time(&body.gravity), table: None };
+        examine(format!("gravity of body \"{}\"", body.name), &course);
+    }
+    found
+}
+
+/// A load over time: its components and their factor.
+struct Course<'a> {
+    components: Vec<Formula>,
+    table: Option<&'a TableSpec>,
+}
+
+/// What steps miss of a load.
+struct Missed {
+    /// Share of the impulse.
+    share: f64,
+    /// End of the step that misses most.
+    time: f64,
+}
+
+impl<'a> Course<'a> {
+    fn of(load: &'a LoadSpec) -> Self {
+        let components = match &load.kind {
+            LoadKind::Traction { value, .. } | LoadKind::BodyForce { value, .. } => in_time(value),
+            LoadKind::Pressure { value, .. } => in_time(std::slice::from_ref(value)),
+        };
+        Self { components, table: load.table.as_ref() }
+    }
+
+    /// What the steps of a grid miss; none of a load that does not vary.
+    fn missed(&self, grid: &Grid) -> Option<Missed> {
+        if self.table.is_none() && !self.components.iter().any(|formula| formula.depends_on(TIME)) {
+            return None;
+        }
+        let parts = (INSTANTS / grid.steps.max(1)).clamp(2, PARTS);
+        let mut whole = 0.0;
+        let mut missed = 0.0;
+        let mut most = 0.0;
+        let mut time = 0.0;
+        for step in 1..=grid.steps {
+            let [from, to] = [step - 1, step].map(|step| grid.time(step));
+            let within = (0..=parts).map(|k| from + (to - from) * k as f64 / parts as f64);
+            let mut instants: Vec<f64> = within.chain(self.rows_between(from, to)).collect();
+            instants.sort_unstable_by(f64::total_cmp);
+            for component in &self.components {
+                let values: Vec<f64> = instants.iter().map(|&time| self.value(component, time)).collect();
+                let ends = [values[0], values[values.len() - 1]];
+                let apart = (integral(&instants, &values) - integral(&[from, to], &ends)).abs();
+                whole += integral(&instants, &values.iter().map(|value| value.abs()).collect::<Vec<f64>>());
+                missed += apart;
+                if apart > most {
+                    most = apart;
+                    time = to;
+                }
+            }
+        }
+        (missed > 0.0 && whole.is_finite()).then(|| Missed { share: missed / whole, time })
+    }
+
+    fn value(&self, component: &Formula, time: f64) -> f64 {
+        self.table.map_or(1.0, |table| table.value(time)) * component.value(&[time])
+    }
+
+    /// Times of the rows of the table between two times.
+    fn rows_between(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        let times = self.table.map_or(&[][..], |table| &table.times);
+        let first = times.partition_point(|time| *time <= from);
+        times[first..].iter().copied().take_while(move |time| *time < to)
+    }
+}
+
+/// Components that depend on time alone; one that depends on places counts as 1.
+fn in_time(components: &[FormulaSpec]) -> Vec<Formula> {
+    let formula = |spec: &FormulaSpec| spec.formula(&[TIME]).unwrap_or_else(|_| Formula::constant(1.0));
+    components.iter().map(formula).collect()
+}
+
+/// Integral of a quantity that is linear between instants.
+fn integral(times: &[f64], values: &[f64]) -> f64 {
+    let pieces = times.windows(2).zip(values.windows(2));
+    pieces.map(|(t, f)| 0.5 * (t[1] - t[0]) * (f[0] + f[1])).sum()
+}
