@@ -30,10 +30,10 @@ pub(crate) struct ExpectKeys {
     /// Number that divides the deviation.
     #[key(Number(POSITIVE), default = "1.0")]
     scale: f64,
-    /// Only rows strictly after this time are used; not with a metric, which is one of the whole run.
+    /// Only rows strictly after this time are used. Not with a metric: it is of the whole run.
     #[key(unit = "time", example = "0.52")]
     after: Option<f64>,
-    /// Only rows strictly before this time are used; not with a metric, which is one of the whole run.
+    /// Only rows strictly before this time are used. Not with a metric: it is of the whole run.
     #[key(unit = "time", example = "1.147")]
     before: Option<f64>,
     /// Expected value.

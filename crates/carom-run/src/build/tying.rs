@@ -91,8 +91,12 @@ impl Tying<'_> {
     pub(super) fn start(&self, position: &mut [f64], velocity: &mut [f64], problems: &mut Vec<Problem>) {
         let of_position = |body: &BodySpec| body.position.clone();
         let of_velocity = |body: &BodySpec| Some(body.velocity.clone());
+        let before = problems.len();
         self.carry("position", position, problems, |a, b| of_position(a) == of_position(b));
-        self.carry("velocity", velocity, problems, |a, b| of_velocity(a) == of_velocity(b));
+        // Rigid-body velocities follow from positions, and would differ with them.
+        if problems.len() == before {
+            self.carry("velocity", velocity, problems, |a, b| of_velocity(a) == of_velocity(b));
+        }
     }
 
     fn carry(

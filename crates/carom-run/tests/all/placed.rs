@@ -102,8 +102,8 @@ fn bodies_must_not_overlap_where_they_start() {
     assert!(problems(&[LOWER, "body.anvil.position=[\"X\", \"1.1*(Y + 0.5) - 0.6\"]"]).is_empty());
 }
 
-/// A block of 2 × 1 that is turned by its positions and spins about its centre there: no momentum, and
-/// ρ A (2² + 1²)/12 · ω of angular momentum.
+/// A block of 2 × 1 that is turned by its positions and spins about its centre there: no momentum,
+/// and ρ A (2² + 1²)/12 · ω of angular momentum.
 #[test]
 fn a_body_spins_about_a_point_where_its_positions_are() {
     let text = r#"

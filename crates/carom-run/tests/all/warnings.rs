@@ -703,7 +703,8 @@ scheme = { kind = "chung-hulbert", rho_inf = 0.5 }
 }
 
 /// By the trapezoidal rule sin ωt has the integral (x cot x) of the exact one over each step, with
-/// x = ωh/2: 0.877 for ωh = 1.2, 0.915 for 1.
+/// x = ωh/2: 0.877 for ωh = 1.2, 0.915 for 1. Steps in which it changes its sign count less: in 20
+/// steps of ωh = 1.2 the exact integrals add up to 0.941 of that of |sin ωt|.
 #[test]
 fn loads_that_steps_do_not_resolve() {
     let found_in = |load: &str| {
@@ -717,7 +718,7 @@ fn loads_that_steps_do_not_resolve() {
         assert_eq!(found_in(resolved), [""; 0], "{resolved}");
     }
     let fast = found_in("traction = [\"sin(120*t)\"]");
-    assert!(fast[0].contains(" by 12.") || fast[0].contains(" by 13."), "{fast:?}");
+    assert!(fast[0].contains(" by 11.6 % of all"), "{fast:?}");
     let blow = found_in("traction = [\"if(t > 0.052 && t < 0.058, 1, 0)\"]");
     assert!(blow[0].contains("by 100 % of all, most in the step before t = 0.0600"), "{blow:?}");
     let folder = tempfile::tempdir().unwrap();
