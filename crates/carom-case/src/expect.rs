@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use carom_formula::Formula;
-use carom_record::question::{Question, Series};
+use carom_record::question::{Quantity, Question, Series};
 use carom_record::{Bound, Deviation, Expect, Norm, OrderOf};
 
 use super::keys::Kind::Number;
@@ -126,15 +126,28 @@ pub(super) fn one(v: &View, asked: Asked, exact: Exact) -> Option<Expect> {
     let bound = keys.bound(v, deviation.is_some() && order.is_none())?;
     let (key, wanted) = order.as_ref().map_or(("what", &keys.what), |order| ("of", &order.of));
     let parsed = if deviation.is_some() {
-        Series::parse(wanted).map(drop)
+        Series::parse(wanted).map(|_| false)
     } else {
         // A single word is a metric or a column.
         let of_arms = order.is_none() && asked == Asked::OfArms;
-        Question::parse(wanted).and_then(|question| if of_arms { question.of_arms() } else { Ok(()) })
+        Question::parse(wanted).and_then(|question| {
+            if of_arms {
+                question.of_arms()?;
+            }
+            Ok(question.quantities().iter().any(|quantity| matches!(quantity, Quantity::Metric(..))))
+        })
     };
-    if let Err(why) = parsed {
-        let help = "write for example \"last total / first total\"";
-        return v.wrong(key, format!("{wanted:?} is not a valid quantity"), why, help);
+    let asks_for_metrics = match parsed {
+        Ok(asks_for_metrics) => asks_for_metrics,
+        Err(why) => {
+            let help = "write for example \"last total / first total\"";
+            return v.wrong(key, format!("{wanted:?} is not a valid quantity"), why, help);
+        }
+    };
+    if asks_for_metrics && let Some(key) = ["after", "before"].into_iter().find(|key| v.has(key)) {
+        let why = "a metric is computed from the whole run; `after` and `before` select rows of columns";
+        let help = "leave it out, or ask for rows of a column: FORM COLUMN";
+        return v.wrong(key, format!("`{key}` cannot be used with a metric"), why, help);
     }
     let ExpectKeys { what, source, after, before, norm, slow, .. } = keys;
     Some(Expect { what, bound, source, deviation, after, before, order, norm, slow })

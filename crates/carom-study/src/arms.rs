@@ -150,11 +150,13 @@ fn levels_of_reference(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<L
         given => given,
     };
     let finest = factors[factors.len() - 1];
+    // A check has half of the finest steps.
     let fits = |steps: &f64| {
-        factors.iter().all(|factor| {
-            let count = steps * factor / finest;
-            (count - count.round()).abs() < 1e-9 * count && count >= 1.0
-        })
+        steps % 2.0 == 0.0
+            && factors.iter().all(|factor| {
+                let count = steps * factor / finest;
+                (count - count.round()).abs() < 1e-9 * count && count >= 1.0
+            })
     };
     let steps = (0..10_000).map(|more| least + f64::from(more)).find(fits)?;
     let level = |factor: &f64| Level {
@@ -205,7 +207,7 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) ->
         let name = if times == 1.0 { FINE_NAME.to_owned() } else { format!("{FINE_NAME}, {times} Δt{on}") };
         draft(name, level, &own, false)
     };
-    let longer = Level { steps: (finest.steps / 2.0).ceil(), ..*finest };
+    let longer = Level { steps: finest.steps / 2.0, ..*finest };
     let of_step = draft(format!("{FINE_NAME}, check of the step"), &longer, &own, true);
     let of_scheme = draft(format!("{FINE_NAME}, check of the scheme"), &longer, &second, true);
     let checks = std::iter::once(of_step).chain((!is_static).then_some(of_scheme));

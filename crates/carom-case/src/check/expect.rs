@@ -8,7 +8,7 @@ use carom_record::units::Labels;
 
 use super::super::columns::Recorded;
 use super::super::document::joined;
-use super::super::{ExpectSpec, Fallback, MaterialSpec, suggest};
+use super::super::{Fallback, MaterialSpec, suggest};
 use super::Check;
 
 impl<'a> Check<'a> {
@@ -80,7 +80,6 @@ impl<'a> Check<'a> {
                     }
                     Quantity::Metric(name, arm) => {
                         arms.extend(arm);
-                        self.whole_run(&name, expect, i);
                         match name.rsplit_once(':') {
                             Some(("energy_lost", _)) => {}
                             Some(("overlay_rms" | "overlay_peak" | "overlay_shift", of)) => {
@@ -108,19 +107,6 @@ impl<'a> Check<'a> {
             for column in wanted.iter().filter(|_| complete).filter(|c| !known.contains(c)) {
                 self.no_column(path.clone(), column, &known);
             }
-        }
-    }
-
-    /// A metric is computed from the whole run.
-    fn whole_run(&mut self, name: &str, expect: &ExpectSpec, i: usize) {
-        let given = [("after", expect.after), ("before", expect.before)];
-        for (key, time) in given.into_iter().filter_map(|(key, time)| Some((key, time?))) {
-            self.add(
-                format!("expect[{i}].{key}"),
-                format!("`{key} = {time}` cannot be used with the metric `{name}`"),
-                "a metric is computed from the whole run; `after` and `before` select rows of columns",
-                format!("leave `{key}` out, or write for example `max contact_force_y`"),
-            );
         }
     }
 

@@ -99,7 +99,7 @@ pub(crate) struct LoadKeys {
     #[key(Formulas(IN_SPACE_AND_TIME), unit = "mass/(length²·time²)", example = "[\"0\", \"-3*X\"]")]
     body_force: Option<Vec<FormulaSpec>>,
     /// CSV file with the columns t and value: a factor on the load, linearly interpolated in time.
-    /// Steps take loads at their ends.
+    /// Steps take loads at their ends, or in their middle.
     #[key(example = "\"amplitude.csv\"")]
     table: Option<String>,
 }

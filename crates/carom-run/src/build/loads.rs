@@ -66,7 +66,10 @@ fn once<'a>(
         let mut nodes = facet.clone();
         nodes.sort_unstable();
         if let Some(other) = taken.insert(nodes, name) {
-            let what = format!("\"{name}\" has facets of \"{other}\"");
+            let what = match other {
+                other if other == name => format!("\"{name}\" is named twice"),
+                other => format!("\"{name}\" has facets of \"{other}\""),
+            };
             let help = "name each part of the boundary once; the loads of two [[load]] tables add up";
             return Err(Problem::new(path, what, "the load would act on them twice", help));
         }

@@ -96,9 +96,9 @@ pub const WARNINGS: [Entry; 30] = [
     },
     Entry {
         id: "unresolved-load",
-        why: "a step knows a load at its ends alone: of a blow between two ends the body feels nothing, and of a \
-              short one a part that depends on the step",
-        advice: "a step a tenth as long as the load lasts, or rows of its table at ends of steps",
+        why: "a step knows a load at its ends, or in its middle, alone: of a blow that lies elsewhere the body feels \
+              nothing, and of a short one a part that depends on the step",
+        advice: "a step a tenth as long as the load lasts, or a longer and weaker load of the same impulse",
         rule: Rule::Model(loads::unresolved_load),
     },
     Entry {

@@ -453,5 +453,5 @@ fn a_facet_is_loaded_once() {
     );
     let problems = Setup::new(&common::case(&text, &[""; 0])).build().err().unwrap();
     assert_eq!(problems[0].path, "load[0].on[2]");
-    assert!(problems[0].what.contains("\"bar.right\" has facets of \"bar.right\""), "{}", problems[0].what);
+    assert!(problems[0].what.contains("\"bar.right\" is named twice"), "{}", problems[0].what);
 }

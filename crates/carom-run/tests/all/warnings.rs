@@ -718,9 +718,9 @@ fn loads_that_steps_do_not_resolve() {
         assert_eq!(found_in(resolved), [""; 0], "{resolved}");
     }
     let fast = found_in("traction = [\"sin(120*t)\"]");
-    assert!(fast[0].contains(" by 11.6 % of all"), "{fast:?}");
+    assert!(fast[0].contains(" by 11.6 % in total"), "{fast:?}");
     let blow = found_in("traction = [\"if(t > 0.052 && t < 0.058, 1, 0)\"]");
-    assert!(blow[0].contains("by 100 % of all, most in the step before t = 0.0600"), "{blow:?}");
+    assert!(blow[0].contains("by 100 % in total, most in the step that ends at t = 0.0600"), "{blow:?}");
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("blow.csv");
     std::fs::write(&file, "t,value\n0,0\n0.05510,0\n0.05511,1\n0.05512,0\n1,0\n").unwrap();

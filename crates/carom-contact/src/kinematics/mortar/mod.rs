@@ -61,10 +61,11 @@ impl Mortar {
     fn is_balanced(&self, nodes: &[usize], slopes: &[Vector<2>], y: Places) -> bool {
         let Opposite::Side(_) = &self.opposite else { return true };
         let origin = y.at(nodes[0]);
+        let round_off_of_places = f64::EPSILON / ROUND_OFF * origin.norm();
         let mut sum = Vector::ZERO;
         let mut moment = 0.0;
         let mut size = 0.0;
-        let mut arm: f64 = 0.0;
+        let mut arm = round_off_of_places;
         for (&node, slope) in nodes.iter().zip(slopes) {
             let place = y.at(node) - origin;
             sum += *slope;
@@ -72,7 +73,8 @@ impl Mortar {
             size += slope.norm();
             arm = arm.max(place.norm());
         }
-        sum.norm() <= ROUND_OFF * size && moment.abs() <= ROUND_OFF * size * arm
+        // A diverging iterate is rejected elsewhere.
+        !size.is_finite() || sum.norm() <= ROUND_OFF * size && moment.abs() <= ROUND_OFF * size * arm
     }
 
     /// Moves the recorded contact point of a pair to that of the sample on the middle facet of its
