@@ -128,13 +128,14 @@ pub(super) fn one(v: &View, asked: Asked, exact: Exact) -> Option<Expect> {
     let parsed = if deviation.is_some() {
         Series::parse(wanted).map(|_| false)
     } else {
-        // A single word is a metric or a column.
+        // A single word is a metric or, of an order, a column.
         let of_arms = order.is_none() && asked == Asked::OfArms;
         Question::parse(wanted).and_then(|question| {
             if of_arms {
                 question.of_arms()?;
             }
-            Ok(question.quantities().iter().any(|quantity| matches!(quantity, Quantity::Metric(..))))
+            let is_metric = |quantity: &&Quantity| matches!(quantity, Quantity::Metric(..));
+            Ok(order.is_none() && question.quantities().iter().any(is_metric))
         })
     };
     let asks_for_metrics = match parsed {
