@@ -537,18 +537,7 @@ fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
         return v.wrong("angular", "the rotation has no centre", "a body rotates about a point", help);
     }
     let about = about.filter(|about| about.len() == dimension)?;
-    let place = match position {
-        None => ["X", "Y", "Z"][..dimension].iter().map(ToString::to_string).collect(),
-        Some(position) if position.iter().any(|place| place.function().is_some()) => {
-            let why = "the velocity of a rotating point is written as a formula of its place";
-            let help = "give `position` as formulas, or `velocity` as functions";
-            return v.wrong("angular", "`position` is a function of the program", why, help);
-        }
-        Some(position) if position.len() == dimension => {
-            position.iter().map(|place| format!("({place})")).collect::<Vec<String>>()
-        }
-        Some(_) => return None,
-    };
+    let place = places(&v, position, dimension)?;
     // Component i of linear + ω × (x − about), without the terms that vanish.
     let component = |i: usize| {
         let [j, k] = [(i + 1) % 3, (i + 2) % 3];
@@ -560,6 +549,20 @@ fn velocity(v: &View) -> Option<Vec<FormulaSpec>> {
         format!("{:?}{}{}", linear[i], term("+", angular[j], k), term("-", angular[k], j))
     };
     Some((0..dimension).map(|i| FormulaSpec::Text(component(i))).collect())
+}
+
+/// Formulas of the place at t = 0 of a point that rotates: those of the body's `position`, or its
+/// coordinates in the mesh.
+fn places(v: &View, position: Option<Vec<FormulaSpec>>, dimension: usize) -> Option<Vec<String>> {
+    let Some(position) = position else {
+        return Some(["X", "Y", "Z"][..dimension].iter().map(ToString::to_string).collect());
+    };
+    if position.iter().any(|place| place.function().is_some()) {
+        let why = "the velocity of a rotating point is written as a formula of its place";
+        let help = "give `position` as formulas, or `velocity` as functions";
+        return v.wrong("angular", "`position` is a function of the program", why, help);
+    }
+    (position.len() == dimension).then(|| position.iter().map(|place| format!("({place})")).collect())
 }
 
 /// Change of volume on which the volumetric energy of a cell depends.

@@ -60,11 +60,11 @@ struct Course<'a> {
     table: Option<&'a TableSpec>,
 }
 
-/// What steps miss of a load.
+/// Difference between the impulses that the steps of a run take from a load and its own.
 struct Missed {
-    /// Share of the impulse.
+    /// Sum of the differences over the steps, relative to ∫|f| dt.
     share: f64,
-    /// End of the step that misses most.
+    /// End of the step with the largest difference.
     time: f64,
 }
 
@@ -77,7 +77,8 @@ impl<'a> Course<'a> {
         Self { components, table: load.table.as_ref() }
     }
 
-    /// What the steps of a grid miss; none of a load that does not vary.
+    /// Difference between the impulses that the trapezoidal rule takes from the load over the steps
+    /// of a run and its own; none of a load that does not vary in time.
     fn missed(&self, grid: &Grid) -> Option<Missed> {
         if self.table.is_none() && !self.components.iter().any(|formula| formula.depends_on(TIME)) {
             return None;
