@@ -74,7 +74,8 @@ pub fn problem(factor: f64, meshes: &[Counts]) -> Option<Problem> {
     Some(Problem::new("refine", what, why, help))
 }
 
-fn whole(factor: f64, n: usize) -> bool {
+/// Whether a number times a factor is whole.
+pub(crate) fn whole(factor: f64, n: usize) -> bool {
     let product = factor * n as f64;
     (product - product.round()).abs() <= WHOLE * product
 }

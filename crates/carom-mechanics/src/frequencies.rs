@@ -1,15 +1,17 @@
-//! Natural frequencies of a model for its initial tangent: ω² of K x = ω² M x, the lowest
-//! deformation modes and the highest.
+//! Natural frequencies of a model for its tangent at a configuration: ω² of K x = ω² M x, the
+//! lowest deformation modes and the highest.
 //!
 //! ```text
-//! lowest    x ← (K + σM)⁻¹ M x, vector by vector, each M-orthogonal to the previous ones (inverse iteration with deflation); σ = 1e-6 ω²_max
+//! lowest    x ← (K + σM)⁻¹ M x, vector by vector, each M-orthogonal to the previous ones (inverse iteration with deflation)
 //! highest   x ← M⁻¹ K x (power iteration)
 //! ```
 //!
-//! Rigid modes have ω² below 1e-9 of the highest and are omitted. Rayleigh's quotient xᵀKx/xᵀMx
-//! gives ω² to twice the digits of x. With a massless node the highest is infinite; σ then refers
-//! to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element procedures",
-//! §11.2).
+//! σ begins with 1e-6 ω²_max and follows Rayleigh's quotient xᵀKx/xᵀMx down: the share of a
+//! mode ω₂ in that of the lowest one, ω₁, decreases by (ω₁² + σ)/(ω₂² + σ) in each iteration.
+//! The quotient gives ω² to twice the digits of x. Rigid modes have ω² below 1e-13 of the
+//! highest, their round-off, and are omitted. With a massless node the highest is infinite; σ
+//! then refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite
+//! element procedures", §11.2).
 //!
 //! A penalty spring on its node alone, the other side fixed:
 //!
@@ -31,10 +33,14 @@ use carom_solid::Configuration;
 /// Maximum iterations per vector, and relative change of the quotient at convergence.
 const ITERATIONS: usize = 400;
 const SETTLED: f64 = 1e-8;
-/// Maximum number of vectors, including rigid modes.
-const VECTORS: usize = 12;
+/// Maximum number of vectors, including rigid modes: those of ten free bodies in space.
+const VECTORS: usize = 63;
 /// ω² relative to the highest below which a mode is rigid.
-const RIGID: f64 = 1e-9;
+const RIGID: f64 = 1e-13;
+/// The first shift σ, relative to the highest ω².
+const SHIFT: f64 = 1e-6;
+/// Quotient, relative to the shift, below which the shift follows.
+const FOLLOWS: f64 = 0.1;
 
 /// Frequencies ω of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -45,53 +51,83 @@ pub struct Frequencies {
     pub highest: Option<f64>,
 }
 
-/// Frequencies of a model; none if its tangent or its mass cannot be factored.
-pub fn frequencies(model: &Model) -> Option<Frequencies> {
+/// Frequencies of a model at a configuration; none if its tangent or its mass cannot be factored.
+/// Modes that inverse iteration does not find, and those beyond them, are left out.
+pub fn frequencies(model: &Model, at: &Configuration) -> Option<Frequencies> {
     let mut system = Direct::new(model);
-    system.assemble(model, &Configuration::at(&model.reference)).ok()?;
-    let n = model.free.len();
+    system.assemble(model, at).ok()?;
     let massless = model.free.iter().any(|dof| model.massless[*dof]);
-    let start =
-        |seed: f64| -> Vec<f64> { (0..n).map(|i| ((12.9898 + seed) * (i as f64 + 1.0)).sin()).collect() };
-    let highest = if massless { None } else { Some(power(model, &mut system, start(0.0))?) };
+    let highest = if massless { None } else { Some(power(model, &mut system, start(model, 0))?) };
     let scale = highest.unwrap_or_else(|| {
         let [mass, stiffness] = system.diagonals();
         stiffness.iter().sum::<f64>() / mass.iter().sum::<f64>()
     });
-    let point = Arc::new(Point { mass: 1e-6 * scale, stiffness: 1.0, ..Point::default() });
-    let none = Constraints::none(model.dimension);
-    system.factor(model, &point, true).ok()?;
-    system.prepare(model, &none).ok()?;
-    let mut found: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+    let mut search = Search { model, system, least: RIGID * scale, shift: SHIFT * scale, found: Vec::new() };
+    search.factor()?;
     let mut lowest = Vec::new();
-    for k in 0..VECTORS.min(n) {
-        let mut x = start(k as f64 + 1.0);
-        let mut square = f64::INFINITY;
-        for _ in 0..ITERATIONS {
-            let mut y = solved(model, &mut system, &mass_product(model, &x))?;
-            for (v, mv) in &found {
-                let share = dot(&y, mv);
-                y.iter_mut().zip(v).for_each(|(y, v)| *y -= share * v);
-            }
-            let quotient = normalise(model, &system, &mut y);
-            x = y;
-            let settled = (quotient - square).abs() <= SETTLED * f64::max(quotient.abs(), RIGID * scale);
-            square = quotient;
-            if settled {
-                break;
-            }
-        }
-        if square > RIGID * scale {
+    while lowest.len() < 3 && search.found.len() < VECTORS.min(model.free.len()) {
+        let Some(square) = search.next() else { break };
+        if square > search.least {
             lowest.push(square.sqrt());
         }
-        if lowest.len() == 3 {
-            break;
-        }
-        let mass = mass_product(model, &x);
-        found.push((x, mass));
     }
     lowest.sort_by(f64::total_cmp);
     Some(Frequencies { lowest, highest: highest.map(f64::sqrt) })
+}
+
+/// Inverse iteration with deflation.
+struct Search<'a> {
+    model: &'a Model,
+    system: Direct,
+    /// The largest ω² of rigid modes.
+    least: f64,
+    /// σ.
+    shift: f64,
+    /// Modes x so far, with M x.
+    found: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Search<'_> {
+    /// Factors K + σM.
+    fn factor(&mut self) -> Option<()> {
+        let point = Arc::new(Point { mass: self.shift, stiffness: 1.0, ..Point::default() });
+        self.system.factor(self.model, &point, true).ok()?;
+        self.system.prepare(self.model, &Constraints::none(self.model.dimension)).ok()?;
+        Some(())
+    }
+
+    /// The next ω²; none if it does not settle.
+    fn next(&mut self) -> Option<f64> {
+        let mut x = start(self.model, self.found.len() + 1);
+        let mut square = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let mut y = solved(self.model, &mut self.system, &mass_product(self.model, &x))?;
+            for (mode, mass) in &self.found {
+                let share = dot(&y, mass);
+                y.iter_mut().zip(mode).for_each(|(y, mode)| *y -= share * mode);
+            }
+            let quotient = normalise(self.model, &self.system, &mut y);
+            x = y;
+            let is_settled = (quotient - square).abs() <= SETTLED * quotient.abs();
+            if is_settled || quotient.abs() < self.least {
+                let mass = mass_product(self.model, &x);
+                self.found.push((x, mass));
+                return Some(quotient);
+            }
+            square = quotient;
+            let follows = quotient.max(self.least);
+            if follows < FOLLOWS * self.shift {
+                self.shift = follows;
+                self.factor()?;
+            }
+        }
+        None
+    }
+}
+
+/// Where the iteration of a mode begins.
+fn start(model: &Model, mode: usize) -> Vec<f64> {
+    (0..model.free.len()).map(|i| ((12.9898 + mode as f64) * (i as f64 + 1.0)).sin()).collect()
 }
 
 /// Frequency of the stiffest contact spring on its node; none without springs, or if a node is

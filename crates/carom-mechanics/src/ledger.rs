@@ -139,12 +139,11 @@ pub(crate) fn account(
     } else {
         Works::of_means(equations, next, increment, dt, means)
     };
-    next.ledger.external_work += works.external;
-    next.ledger.contact_work -= works.contact;
+    works.book(&mut next.ledger);
     if model.has_friction() {
         let stored = last.stick_springs - next.ledger.stick_springs;
-        next.ledger.contact_work += works.friction - stored;
-        next.ledger.friction_work += stored - works.friction;
+        next.ledger.contact_work -= stored;
+        next.ledger.friction_work += stored;
         next.ledger.stick_springs = last.stick_springs;
     }
     // Spring energy is not lost: it is part of the strain energy.

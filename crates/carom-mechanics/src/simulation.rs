@@ -19,7 +19,6 @@ use crate::substeps::{Limits, MOST, Next, Progress, decide};
 use crate::timings::{Timings, timed};
 use crate::trace::Trace;
 use crate::workspace::Workspace;
-use carom_solid::Configuration;
 
 /// What is called between the trial steps of a grid step.
 type Watch<'a> = dyn FnMut(&Attempt) -> ControlFlow<()> + Send + 'a;
@@ -175,8 +174,7 @@ impl Simulation {
     /// If a cell is inverted.
     pub fn assemble(&mut self) -> Result<(), Rejected> {
         let Self { work, model, state, .. } = self;
-        let at = Configuration { before: None, y: &state.y, past: state.materials.past(0.0) };
-        work.system.assemble(model, &at)
+        work.system.assemble(model, &state.configuration())
     }
 
     /// Advances to the next grid time and reports what happened.

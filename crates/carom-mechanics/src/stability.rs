@@ -1,5 +1,5 @@
 //! The critical time step of an explicit scheme: Δt ≤ 2/ω_max, with ω_max² the largest eigenvalue
-//! of M⁻¹K for the initial tangent.
+//! of M⁻¹K for the tangent at the start.
 //!
 //! The power iteration with M^{-½}K M^{-½} approximates it from below, by Rayleigh's quotient (for
 //! the cluster at the end of a mesh's spectrum within a percent in some hundred products). The
@@ -32,25 +32,25 @@ pub struct StableStep {
     pub cell: f64,
 }
 
-/// The bound by single cells, [`StableStep::cell`], which needs no matrix.
-pub fn cell_step(model: &Model) -> Option<f64> {
-    Some(2.0 / bound(model, &lumped(model))?.sqrt())
+/// The bound by single cells, [`StableStep::cell`], at a configuration, which needs no matrix.
+pub fn cell_step(model: &Model, at: &Configuration) -> Option<f64> {
+    Some(2.0 / bound(model, at, &lumped(model))?.sqrt())
 }
 
 /// Bound on ω_max²; `None` if a cell is inverted or a free node is massless.
-fn bound(model: &Model, mass: &[f64]) -> Option<f64> {
+fn bound(model: &Model, at: &Configuration, mass: &[f64]) -> Option<f64> {
     if (0..model.dofs()).any(|dof| !model.fixed[dof] && mass[dof] <= 0.0) {
         return None;
     }
-    Some(largest_of_cells(model)?.max(f64::MIN_POSITIVE))
+    Some(largest_of_cells(model, at)?.max(f64::MIN_POSITIVE))
 }
 
-/// Stable step of a model with lumped masses for its initial tangent; `None` if a cell is inverted
-/// or a free node is massless. Ties are left out: they lower the highest frequency.
-pub fn stable_step(model: &Model) -> Option<StableStep> {
+/// Stable step of a model with lumped masses for its tangent at a configuration; `None` if a cell
+/// is inverted or a free node is massless. Ties are left out: they lower the highest frequency.
+pub fn stable_step(model: &Model, at: &Configuration) -> Option<StableStep> {
     let mass = lumped(model);
-    let cell = bound(model, &mass)?;
-    let mut matrix = scaled_tangent(model, &mass, cell)?;
+    let cell = bound(model, at, &mass)?;
+    let mut matrix = scaled_tangent(model, at, &mass, cell)?;
     let mut x = vec![0.0; model.dofs()];
     for (i, dof) in (0..model.dofs()).filter(|dof| !model.fixed[*dof]).enumerate() {
         x[dof] = mass[dof].sqrt() * (12.9898 * (i as f64 + 1.0)).sin();
@@ -72,16 +72,17 @@ pub fn stable_step(model: &Model) -> Option<StableStep> {
     Some(StableStep { power: 2.0 / (ratio * cell).sqrt(), cell: 2.0 / cell.sqrt() })
 }
 
-/// M^{-½} K M^{-½}/ω² for the initial tangent, with zero rows where a dof is constrained: no entry
-/// is larger than 1 if ω² bounds the eigenvalues, so that single precision suffices.
-fn scaled_tangent(model: &Model, mass: &[f64], square: f64) -> Option<NodeMatrix> {
+/// M^{-½} K M^{-½}/ω² for the tangent at a configuration, with zero rows where a dof is
+/// constrained: no entry is larger than 1 if ω² bounds the eigenvalues, so that single precision
+/// suffices.
+fn scaled_tangent(model: &Model, at: &Configuration, mass: &[f64], square: f64) -> Option<NodeMatrix> {
     let d = model.dimension;
     let mut matrix = NodeMatrix::new(d, coupled(model));
     let weight = |dof: u32| {
         let dof = dof as usize;
         if model.fixed[dof] { 0.0 } else { (mass[dof] * square).sqrt().recip() }
     };
-    each_tangent(model, &Configuration::at(&model.initial_position), |part, cell, tangent| {
+    each_tangent(model, at, |part, cell, tangent| {
         let mesh = part.body.mesh();
         let dofs = part.cell_dofs(cell);
         let n = dofs.len();
@@ -108,14 +109,13 @@ pub(crate) fn lumped(model: &Model) -> Vec<f64> {
 }
 
 /// Bound on the largest eigenvalue of any cell with its own lumped mass.
-fn largest_of_cells(model: &Model) -> Option<f64> {
+fn largest_of_cells(model: &Model, at: &Configuration) -> Option<f64> {
     let mut largest = 0.0_f64;
-    for part in &model.parts {
+    for (part, at) in model.configurations(at) {
         let mesh = part.body.mesh();
         let n = mesh.element.nodes();
         let d = model.dimension;
         let dofs = mesh.element.dofs();
-        let y = part.of(&model.reference);
         let compute = |first: usize, squares: &mut [f64], _: &mut [f64]| {
             let mut work = vec![0.0; n * n];
             let mut mass = vec![0.0; n];
@@ -128,7 +128,7 @@ fn largest_of_cells(model: &Model) -> Option<f64> {
                     memory: &mut [],
                     dissipated: &mut [],
                 };
-                part.body.respond(first + k, &Configuration::at(y), Ask::Tangent, out)?;
+                part.body.respond(first + k, &at, Ask::Tangent, out)?;
                 let tangent = numbers[dofs..].chunks_exact(dofs).enumerate();
                 let scaled = tangent.flat_map(|(i, row)| {
                     let of_row = mass[i / d];

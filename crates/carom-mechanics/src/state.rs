@@ -1,6 +1,7 @@
 //! All data that determine the next step. A clone is a checkpoint.
 
 use carom_contact::{Pair, Pairing};
+use carom_solid::Configuration;
 use educe::Educe;
 use serde::{Deserialize, Serialize};
 
@@ -259,6 +260,11 @@ pub(crate) struct OverDofs<'a> {
 }
 
 impl State {
+    /// Positions and memory of the materials, at which forces and tangents are asked for.
+    pub fn configuration(&self) -> Configuration<'_> {
+        Configuration { before: None, y: &self.y, past: self.materials.past(0.0) }
+    }
+
     /// Every vector over the dofs.
     pub(crate) fn over_dofs(&mut self) -> Vec<OverDofs<'_>> {
         let always = |what, values| OverDofs { what, may_lack: false, values };

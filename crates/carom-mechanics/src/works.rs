@@ -12,11 +12,22 @@
 //! ends is of second order. With it the trapezoidal rule dissipates nothing in linear motion, an
 //! obstacle that turns under a body does no work, and works do not depend on the frame.
 //!
-//! Where contact begins, F_{s+1} is an impulse over Δt, of which the mean of both ends takes one
-//! half, as the velocities do, and a projection replaces it by the steady force. Friction with its
-//! mean in the balance, 1 − α_f of F_{s+1}, would count impulses up to twice. Friction in load
-//! steps and that on springs, which have no such impulses, works with its mean in the balance, so
-//! that its work is not positive where slip begins or ends.
+//! Friction in load steps and that on springs works with its mean in the balance, so that its work
+//! is not positive where slip begins or ends.
+//!
+//! Where a gap closes and velocities are projected, F_{s+1} is an impulse over Δt, which changes
+//! v_s into v⁻ before the projection. An impulse works at the mean velocity, whatever the path of
+//! the positions ([`Works::beyond_path`]):
+//!
+//! ```text
+//! p = Δt κ (F_{s+1} − F_s)      κ = γ (1 − α_f)/(1 − α_m), the share of F_{s+1} in v⁻     α family
+//! p = Δt (F̄ − F_s)                                                                       all others
+//! work                          Δy·F_s + p·(v_s + v⁻)/2
+//! ```
+//!
+//! In the trapezoidal and the midpoint rule Δy is Δt (v_s + v⁻)/2, and nothing changes. With
+//! another path the time integrator would seem to take a part of the impact, which does not vanish
+//! with the step.
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
@@ -29,9 +40,10 @@ use carom_time::Stage;
 use crate::friction_state::friction_forces;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
-use crate::state::{Means, State};
+use crate::state::{Ledger, Means, State};
 
 /// Works of the forces of a step.
+#[derive(Default)]
 pub(crate) struct Works {
     /// Work of loads beyond their potential, and of moving supports.
     pub external: f64,
@@ -102,6 +114,50 @@ impl Works {
             external += dot(increment, &means.supports) + dot(increment, &impulse) / dt;
         }
         Self { external, contact: dot(increment, &means.contact), friction }
+    }
+
+    /// What the impulses of a step in which gaps close work at the mean velocity beyond what the
+    /// works of the step have; `next` is as it was for these. That of supports and obstacles, which
+    /// velocities are ahead of, is booked with the projection (`carried.rs`).
+    pub(crate) fn beyond_path(
+        equations: &Equations,
+        last: &Evaluation,
+        next: &State,
+        dt: f64,
+        means: &Means,
+    ) -> Self {
+        let Equations { model, state, stage, .. } = equations;
+        let increment = &last.at.increment;
+        let turned = turned_friction(last, next);
+        let mut works = Self::default();
+        let at = |forces: &[f64], i: usize| forces.get(i).copied().unwrap_or(0.0);
+        for i in (0..model.dofs()).filter(|&i| !model.massless[i]) {
+            let path = 0.5 * dt * (state.v[i] + next.v[i]);
+            let [contact, friction] = if stage.works_at_both_ends {
+                let [averaged, at_end] = [stage.weights.contact, 1.0]
+                    .map(|weight| path * gamma(stage, dt) * weight / stage.weights.mass - 0.5 * increment[i]);
+                let contact = next.f_contact[i] + at(&turned, i) - state.f_contact[i];
+                let friction = at(&next.f_friction, i) + at(&turned, i) - at(&state.f_friction, i);
+                let contact_at_end = at(&next.f_at_end, i) - at(&state.f_at_end, i);
+                let friction_at_end = at(&next.f_friction_at_end, i) - at(&state.f_friction_at_end, i);
+                [[contact, contact_at_end], [friction, friction_at_end]]
+                    .map(|[all, end]| averaged * (all - end) + at_end * end)
+            } else {
+                let contact = means.contact[i] - state.f_contact[i];
+                let friction = at(&means.friction, i) - at(&state.f_friction, i);
+                [contact, friction].map(|change| (path - increment[i]) * change)
+            };
+            works.contact += contact;
+            works.friction += friction;
+        }
+        works
+    }
+
+    /// Books the works of friction apart from those of contact.
+    pub(crate) fn book(&self, ledger: &mut Ledger) {
+        ledger.external_work += self.external;
+        ledger.contact_work += self.friction - self.contact;
+        ledger.friction_work -= self.friction;
     }
 }
 

@@ -29,15 +29,10 @@ pub(crate) fn is_stress(quantity: &str) -> bool {
 
 /// Description of a probe quantity.
 pub(crate) fn words(quantity: &str) -> String {
-    let along = |what: &str| match quantity.chars().last() {
-        Some('x') => format!("horizontal {what}"),
-        Some('y') => format!("vertical {what}"),
-        _ => what.to_owned(),
-    };
     match quantity {
-        "ux" | "uy" | "uz" => along("displacement"),
-        "vx" | "vy" | "vz" => along("velocity"),
-        "ax" | "ay" | "az" => along("acceleration"),
+        "ux" | "uy" | "uz" => "displacement".into(),
+        "vx" | "vy" | "vz" => "velocity".into(),
+        "ax" | "ay" | "az" => "acceleration".into(),
         "von_mises" => "von Mises stress".into(),
         "det_f" => "volume ratio".into(),
         _ if quantity.starts_with("sigma_") => "Cauchy stress".into(),

@@ -128,7 +128,8 @@ impl<'a> Setup<'a> {
         let threads = self.threads.of(model.reference.len());
         let overlaps =
             if placed { Vec::new() } else { overlaps(case, &model, |overlap| overlap != Overlap::Relax) };
-        let problems = [overlaps, too_long(case, &model)].concat();
+        let problems =
+            [overlaps, too_long(case, &model, &Configuration::at(&model.initial_position))].concat();
         if !problems.is_empty() {
             return Err(problems.into());
         }
@@ -143,9 +144,13 @@ impl<'a> Setup<'a> {
         let grid = grid(case, overlap::floor(case, &model));
         let obstacles: Vec<_> =
             model.parts[case.bodies.len()..].iter().map(|part| (part.nodes(), part.name.clone())).collect();
-        Simulation::new(model, stepper, grid, inertia, before, threads)
-            .map(|simulation| simulation.with_fallback(fallback))
-            .map_err(|rejected| vec![no_start(case, placed, &obstacles, &rejected)].into())
+        let simulation = Simulation::new(model, stepper, grid, inertia, before, threads)
+            .map_err(|rejected| vec![no_start(case, placed, &obstacles, &rejected)])?;
+        // The start may be that of another run, or one without overlaps.
+        let (model, state) = (simulation.model(), simulation.state());
+        let is_moved = state.y != model.initial_position;
+        let problems = if is_moved { too_long(case, model, &state.configuration()) } else { Vec::new() };
+        if problems.is_empty() { Ok(simulation.with_fallback(fallback)) } else { Err(problems.into()) }
     }
 
     /// Builds the model and continues from a state of an earlier run of the same case. The run that
@@ -320,17 +325,17 @@ fn settings(case: &Case, model: &Model) -> Settings {
     }
 }
 
-/// The problem of a step longer than the stable one of an explicit scheme.
-fn too_long(case: &Case, model: &Model) -> Vec<Problem> {
+/// The problem of a step longer than the stable one of an explicit scheme at a configuration.
+fn too_long(case: &Case, model: &Model, at: &Configuration) -> Vec<Problem> {
     if !case.time.scheme.is_explicit() {
         return Vec::new();
     }
     let step = case.time.step;
     // The limit by power iteration is never shorter.
-    if cell_step(model).is_some_and(|cell| step <= SAFETY * cell) {
+    if cell_step(model, at).is_some_and(|cell| step <= SAFETY * cell) {
         return Vec::new();
     }
-    let Some(stable) = stable_step(model) else {
+    let Some(stable) = stable_step(model, at) else {
         let why = "a cell is inverted at the start, or a free node has no mass";
         return vec![Problem::new(
             "time.scheme",

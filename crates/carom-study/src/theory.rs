@@ -78,7 +78,8 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
 }
 
 fn of_case(case: &Case) -> Option<Frequencies> {
-    frequencies(Setup::new(case).start().ok()?.model())
+    let start = Setup::new(case).start().ok()?;
+    frequencies(start.model(), &start.state().configuration())
 }
 
 fn spring_of(case: &Case) -> Option<f64> {

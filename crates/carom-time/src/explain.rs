@@ -185,9 +185,14 @@ pub(crate) fn accuracy_of(kernel: &dyn Kernel, steps_per_period: u32) -> Accurac
 /// at c Δt = h: k h = ω Δt = 2π/n in the exact motion.
 fn dispersion(n: u32, principal: impl Fn(f64) -> Option<Principal>) -> Option<f64> {
     let exact = TAU / f64::from(n);
-    let semi_discrete = 2.0 * (exact / 2.0).sin() * (3.0 / (2.0 + exact.cos())).sqrt();
+    let semi_discrete = with_consistent_mass(exact);
     let angle = semi_discrete / (1.0 + principal(semi_discrete)?.period_error);
     Some(angle / exact - 1.0)
+}
+
+/// ωΔt of linear elements with consistent mass for a wave whose exact one is given, at c Δt = h.
+pub(crate) fn with_consistent_mass(exact: f64) -> f64 {
+    2.0 * (exact / 2.0).sin() * (3.0 / (2.0 + exact.cos())).sqrt()
 }
 
 /// Steps in which overshoot is looked for, and Ω of its mode.

@@ -28,7 +28,8 @@ pub(crate) fn accuracy_table(f: &mut Formatter, rows: &[Accuracy]) -> Result {
         writeln!(f, "  {steps:>6}  {radius:>10.6}  {damping:>15}  {period:>14}  {dispersion:>12}")
     })?;
     let words = "dispersion: error of the phase velocity of a wave in a bar of linear elements, with as many \
-                 elements per wavelength as steps per period";
+                 elements per wavelength as steps per period; masses are lumped with explicit schemes, and \
+                 consistent with others";
     write_wrapped(f, words)
 }
 

@@ -5,7 +5,7 @@ use std::fmt::{Display, Formatter, Result};
 use serde::Serialize;
 
 use crate::catalogue::info;
-use crate::explain::Accuracy;
+use crate::explain::{Accuracy, with_consistent_mass};
 use crate::layout::{accuracy_table, write_wrapped};
 use crate::name::{Name, short};
 use crate::nonsmooth::Nonsmooth;
@@ -84,10 +84,14 @@ fn accuracy(scheme: &Nonsmooth, steps_per_period: u32) -> Option<Accuracy> {
     })
 }
 
-/// Angle per step of a wave in a bar of linear elements with lumped mass whose exact angle is
-/// `omega_dt`, at c Δt = h.
+/// Angle per step of a wave in a bar of linear elements whose exact angle is `omega_dt`, at c Δt =
+/// h. Explicit schemes have lumped masses, others consistent ones.
 fn wave(scheme: &Nonsmooth, omega_dt: f64) -> Option<f64> {
-    Some(scheme.oscillation(2.0 * (omega_dt / 2.0).sin())?.1)
+    let semi_discrete = match scheme {
+        Nonsmooth::Explicit(_) => 2.0 * (omega_dt / 2.0).sin(),
+        Nonsmooth::Impulse(_) => with_consistent_mass(omega_dt),
+    };
+    Some(scheme.oscillation(semi_discrete)?.1)
 }
 
 impl Display for NonsmoothExplanation {

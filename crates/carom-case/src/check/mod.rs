@@ -446,7 +446,7 @@ impl<'a> Check<'a> {
                 if let Some(d) = self.draft.dimension.filter(|d| !columns::exists(*quantity, *d)) {
                     let why = format!("the case has dimension = {d}");
                     let help = if d == 1 {
-                        "use ux, vx, ax, sigma_xx, von_mises or det_f"
+                        "use ux, vx, ax, sigma_xx, strain_xx, plastic_strain, yielded or det_f"
                     } else {
                         "use a quantity of the plane, sigma_zz or strain_zz"
                     };

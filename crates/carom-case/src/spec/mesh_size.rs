@@ -8,6 +8,7 @@ use super::mesh::{MeshSpec, RefineSpec};
 use super::polygon::area_within;
 use crate::mesh_file::{FileMesh, unchanged};
 use crate::no_mesh::NoMesh;
+use crate::refine::whole;
 
 /// Names of the sides in planes of symmetry across x, y and z.
 pub(crate) const PLANES: [&str; 3] = ["plane_x", "plane_y", "plane_z"];
@@ -59,6 +60,25 @@ impl MeshSpec {
             Self::File(file) => file.parts = factor.round() as usize,
         }
         self
+    }
+
+    /// Whether the numbers of cells remain whole with cells smaller by a factor.
+    pub fn may_be_refined(&self, factor: f64) -> bool {
+        let are_whole = |cells: &[usize]| cells.iter().all(|n| whole(factor, *n));
+        match self {
+            Self::Interval { cells, .. } => are_whole(&[*cells]),
+            Self::Rectangle { cells, .. } => are_whole(cells),
+            Self::Box { cells, .. } => are_whole(cells),
+            Self::Extrusion { of, layers, .. } => of.may_be_refined(factor) && are_whole(&[*layers]),
+            Self::File(file) => are_whole(&[file.parts]),
+            Self::Disc { .. }
+            | Self::HalfDisc { .. }
+            | Self::Ring { .. }
+            | Self::Ball { .. }
+            | Self::Cylinder { .. }
+            | Self::Tube { .. }
+            | Self::Polygon { .. } => true,
+        }
     }
 
     /// The mesh from a shape or a file: this one, or the one that it extrudes.

@@ -44,6 +44,7 @@ use crate::rejected::Rejected;
 use crate::stability::{SAFETY, lumped};
 use crate::state::{HalfStepVelocity, State};
 use crate::timings::timed;
+use crate::works;
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
@@ -130,6 +131,7 @@ impl Stepper for Explicit {
             dt,
             carried: 0.0,
             leads: [0.0; 2],
+            impulses: works::Works::default(),
             paths: Vec::new(),
             previous: None,
             leaves,

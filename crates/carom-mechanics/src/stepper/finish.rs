@@ -13,8 +13,9 @@ use crate::ledger::changes_of_reactions;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::{Previous, State};
-use crate::velocity::persistency::project;
+use crate::velocity::persistency::{asks, project};
 use crate::velocity::restitution::{self, Impact, separate};
+use crate::works::Works;
 use crate::workspace::Workspace;
 
 /// A step that is to be finished.
@@ -27,6 +28,9 @@ pub(super) struct Finish<'a> {
     pub carried: f64,
     /// ½ − α_f − c of the forces by which velocities are ahead (`works.rs`); 0 of other schemes.
     pub leads: [f64; 2],
+    /// What impulses work beyond the works of the step, if gaps close and velocities are projected
+    /// (`works.rs`); none of schemes whose works have them.
+    pub impulses: Works,
     /// The parts of the step, to find when nodes met the other side; none if that is not asked.
     pub paths: Vec<Path<'a>>,
     /// What a two-step scheme needs of this step, unless velocities jump at its end.
@@ -58,6 +62,9 @@ impl Finish<'_> {
             if depth > bound {
                 return Err(Rejected::Deep { depth, bound });
             }
+        }
+        if report.activations.iter().any(|place| asks(model, place)) {
+            self.impulses.book(&mut next.ledger);
         }
         let taken = start.ledger.contact_work - next.ledger.contact_work;
         restitution::take(model, &mut next, taken);

@@ -11,7 +11,7 @@ use super::finish::Finish;
 use super::in_velocity::solve_in_velocity;
 use super::meetings::Path;
 use super::within::project_within;
-use super::{Accepted, StepReport, Stepper};
+use super::{Accepted, StepReport, Stepper, difference};
 use crate::carried;
 use crate::contact::update::{search, start_step};
 use crate::friction_state::take_slips;
@@ -25,7 +25,7 @@ use crate::stage::grip::solve_by_grip;
 use crate::stage::newton::solve_stage;
 use crate::state::{Means, Previous, State};
 use crate::velocity::persistency::contact_forces_into;
-use crate::works;
+use crate::works::{self, Works};
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
@@ -170,6 +170,13 @@ impl Stepper for Implicit {
         }
         contact_forces_into(model, &mut next, &solved.rows);
         ledger::account(&equations, &solved, &mut next, strain, dt, &means);
+        let closes =
+            !self.in_velocity && !equations.stage.is_static() && !difference(&next, state).is_empty();
+        let impulses = if closes {
+            Works::beyond_path(&equations, &solved, &next, dt, &means)
+        } else {
+            Works::default()
+        };
         if self.kernel.stages() > 1 {
             ledger::keep_friction(model, &solved, &mut next);
         }
@@ -207,8 +214,17 @@ impl Stepper for Implicit {
         });
         work.spare.put(solved);
         let paths = paths(state, &finished, &ends);
-        let finish =
-            Finish { model, start: state, dt, carried: factor, leads, paths, previous, leaves: None };
+        let finish = Finish {
+            model,
+            start: state,
+            dt,
+            carried: factor,
+            leads,
+            impulses,
+            paths,
+            previous,
+            leaves: None,
+        };
         finish.accept(next, report, work)
     }
 }

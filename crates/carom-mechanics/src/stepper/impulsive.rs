@@ -41,7 +41,7 @@ use crate::stage::evaluation::{Evaluation, Iterate};
 use crate::state::State;
 use crate::timings::timed;
 use crate::trace::Iteration;
-use crate::works::{at_both_ends, work_ahead};
+use crate::works::{Works, at_both_ends, work_ahead};
 use crate::workspace::Workspace;
 use carom_solid::Configuration;
 
@@ -177,8 +177,18 @@ impl Stepper for Impulsive {
         let fastest = approach(model, &state.v, dt).max(approach(model, &next.v, dt));
         let leaves = Some(depth(model, state) + fastest + tie);
         let paths = vec![Path { start: [&state.y, &state.v, &state.a], from: state.time, to }];
-        Finish { model, start: state, dt, carried: 0.0, leads: [0.0; 2], paths, previous: None, leaves }
-            .accept(next, report, work)
+        Finish {
+            model,
+            start: state,
+            dt,
+            carried: 0.0,
+            leads: [0.0; 2],
+            impulses: Works::default(),
+            paths,
+            previous: None,
+            leaves,
+        }
+        .accept(next, report, work)
     }
 }
 

@@ -91,7 +91,7 @@ pub(crate) fn project_stage(
 }
 
 /// Whether the velocities of a pair are projected.
-fn asks(model: &Model, &(contact, _): &Place) -> bool {
+pub(crate) fn asks(model: &Model, &(contact, _): &Place) -> bool {
     model.contacts[contact].projects
 }
 

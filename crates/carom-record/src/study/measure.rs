@@ -35,15 +35,21 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Errors {
+    /// Distance of two runs from each other.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let apart = product(&self.vector, &self.vector) + product(&other.vector, &other.vector)
+            - 2.0 * product(&self.vector, &other.vector);
+        apart.max(0.0).sqrt()
+    }
+
     /// Whether every solution within the uncertainty of the reference is nearer to this run than to
     /// another one.
     pub fn is_nearer(&self, other: &Self, uncertainty: f64) -> bool {
         let own = product(&self.vector, &self.vector);
         let others = product(&other.vector, &other.vector);
-        let apart = own + others - 2.0 * product(&self.vector, &other.vector);
         // Errors themselves are known up to round-off only.
         let is_less = others.sqrt() - own.sqrt() > 2.0 * ROUND_OFF;
-        is_less && others - own > 2.0 * uncertainty * apart.max(0.0).sqrt()
+        is_less && others - own > 2.0 * uncertainty * self.distance(other)
     }
 }
 

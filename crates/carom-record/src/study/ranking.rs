@@ -5,10 +5,12 @@
 //! columns     e = rms over vectors of ‖⟨m − r⟩‖ / scale       motion, averaged forces and stresses
 //! of an arm   the largest error of its members; its interval: e ± U, the uncertainty of the reference
 //! a better    (‖b − r‖² − ‖a − r‖²) / (2 ‖a − b‖) > U         for all members a of one and some member b of the other
+//! a, b same   ‖a − b‖ ≤ 0.05 (e − U)                          for every member a some member b, and conversely
 //! ```
 //!
 //! The quotient is the distance of r from the solutions that are as far from a as from b: an arm is
-//! distinguishably better if every solution within U of r is nearer to it. Intervals without a
+//! distinguishably better if every solution within U of r is nearer to it. The errors of arms that
+//! are the same differ by at most 5 % for each of these solutions. Intervals without a
 //! common point imply that; an error that both arms have in common, such as that of their mesh,
 //! makes intervals overlap, but does not hide the difference. The place of an arm is one plus the
 //! number of arms of its level that are distinguishably better; arms with the same results to the
@@ -28,7 +30,7 @@ pub use super::ranked::{Apart, Ranked};
 use super::reference::Reference;
 use super::row::Row;
 pub use super::verdict::{Confidence, Verdict};
-use super::verdict::{Field, recommended};
+use super::verdict::{EQUAL_ERROR, Field, recommended};
 use crate::{Reason, Status};
 
 /// Identifier of the warning about energy that friction hides.
@@ -114,6 +116,17 @@ impl Ranks<'_> {
             let beats = |far: &Errors| members(arm).all(|own| own.is_nearer(far, measure.uncertainty));
             members(other).any(beats)
         };
+        // The largest distance of a member of one arm from the closest member of the other.
+        let excess = |arm: usize, other: usize| {
+            let closest =
+                |far: &Errors| members(arm).map(|own| own.distance(far)).fold(f64::INFINITY, f64::min);
+            members(other).map(closest).fold(0.0, f64::max)
+        };
+        let is_same = |arm: usize, other: usize| {
+            let error = members(arm).map(|own| own.error).fold(0.0, f64::max);
+            let apart = excess(arm, other).max(excess(other, arm));
+            apart <= (EQUAL_ERROR - 1.0) * (error - measure.uncertainty)
+        };
         let level = |level: usize| {
             let sound = self
                 .arms()
@@ -130,6 +143,7 @@ impl Ranks<'_> {
             apart: &apart,
             is_twin: &|a, b| rows[a].is_twin(&rows[b]),
             is_better: &is_better,
+            is_same: &is_same,
             is_repeated: levels.iter().flatten().all(is_repeated),
             ranked: levels.iter().flatten().collect(),
         };

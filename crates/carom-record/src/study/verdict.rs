@@ -18,7 +18,7 @@ use super::ranked::{Apart, Ranked};
 /// Factor within which counted costs are equal.
 const EQUAL_COST: f64 = 1.1;
 /// Factor within which errors are equal.
-const EQUAL_ERROR: f64 = 1.05;
+pub(super) const EQUAL_ERROR: f64 = 1.05;
 /// Factor by which an error is clearly smaller than that of another arm.
 const CLEAR: f64 = 1.5;
 
@@ -30,7 +30,8 @@ pub enum Confidence {
     Low,
     /// The arm is the best of its cost in this study.
     Medium,
-    /// The arm is the best of its cost by more than all uncertainties, over an ensemble.
+    /// No arm of its cost has a smaller error, up to 5 %, whatever the solution within the
+    /// uncertainty of the reference, over an ensemble.
     High,
 }
 
@@ -50,7 +51,8 @@ impl Confidence {
 pub struct Verdict {
     /// Number of the recommended arm.
     pub arm: usize,
-    /// Arms of other methods that are not distinguished from it and cost no more, by name.
+    /// Arms of other methods that are tied with it, by name: they cost no more, and are not
+    /// distinguished from it or within 5 % of its error.
     pub alike: Vec<String>,
     /// Reasons for the recommendation.
     pub reasons: Vec<String>,
@@ -70,6 +72,8 @@ pub(super) struct Field<'a> {
     pub(super) is_twin: &'a dyn Fn(usize, usize) -> bool,
     /// Whether the first of two arms is distinguishably better.
     pub(super) is_better: &'a dyn Fn(usize, usize) -> bool,
+    /// Whether the errors of two arms are equal, whatever the solution.
+    pub(super) is_same: &'a dyn Fn(usize, usize) -> bool,
     /// Whether every arm has several members.
     pub(super) is_repeated: bool,
     pub(super) ranked: Vec<&'a Ranked>,
@@ -146,7 +150,8 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let chosen = field.least(affordable, |r| r.error).unwrap_or(cheapest);
     let mut alike: Vec<&str> = field
         .rivals(chosen)
-        .filter(|r| !(field.is_better)(chosen.arm, r.arm) && (required.is_none() || is_accurate(r)))
+        .filter(|r| !(field.is_better)(chosen.arm, r.arm) || r.error <= EQUAL_ERROR * chosen.error)
+        .filter(|r| required.is_none() || is_accurate(r))
         .map(|r| field.name(r))
         .collect();
     alike.sort_unstable();
@@ -192,14 +197,12 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
     if field.rivals(chosen).next().is_none() {
         at_most(Confidence::Medium, "no other method was run at this cost".to_owned());
     }
-    let is_behind = |r: &Ranked| (field.is_better)(chosen.arm, r.arm) && r.error > EQUAL_ERROR * chosen.error;
-    let open = field.rivals(chosen).filter(|r| !is_behind(r));
+    let is_settled = |r: &Ranked| (field.is_better)(chosen.arm, r.arm) || (field.is_same)(chosen.arm, r.arm);
+    let open = field.rivals(chosen).filter(|r| !is_settled(r));
     if let Some(next) = field.least(open, |r| r.error) {
         let is_clear = next.error > CLEAR * chosen.error;
         let most = if is_clear { Confidence::Medium } else { Confidence::Low };
-        let is_equal = (field.is_better)(chosen.arm, next.arm);
-        let how = if is_equal { "as accurate as, up to 5 %," } else { "not distinguished from" };
-        at_most(most, format!("{how} {}: {}", field.name(next), known(next)));
+        at_most(most, format!("not distinguished from {}: {}", field.name(next), known(next)));
     }
     if let Some(accuracy) = field.required() {
         let cheaper = field.ranked.iter().filter(|r| EQUAL_COST * r.cost < chosen.cost);
@@ -216,8 +219,8 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
         at_most(Confidence::Medium, why.to_owned());
     }
     if reasons.is_empty() {
-        let why = "every solution within the uncertainty of the reference is nearer to it than to any other \
-                   method at its cost";
+        let why = "whatever the solution within the uncertainty of the reference, no other method at its cost \
+                   has a smaller error, up to 5 %";
         reasons.push(why.to_owned());
     }
     (confidence, reasons)

@@ -39,15 +39,22 @@ pub(super) fn plot(study: &Study) -> Option<Plot> {
         pane("numerical damping ratio", "ξ", 3, (0.0, 1.0)),
         pane("relative period error", "(T − T_{0})/T_{0}", 4, (-0.1, 1.0)),
     ];
-    let springs = said_if(
-        marks.iter().any(|(_, word)| word.starts_with("ω_{c}")),
-        " ω_{c}: the stiffest penalty spring on its node alone.",
-    );
+    let is_marked = |symbol: &str| marks.iter().any(|(_, word)| word.starts_with(symbol));
+    let extremes = [("ω_{1}", "lowest (ω_{1})"), ("ω_{max}", "highest (ω_{max})")];
+    let marked: Vec<&str> =
+        extremes.into_iter().filter(|(symbol, _)| is_marked(symbol)).map(|(_, words)| words).collect();
+    let lines = match &marked[..] {
+        [] => String::new(),
+        marked => format!(
+            " Vertical lines: {} frequency of the model of the first arm at the longest (labelled) and the shortest time \
+             step.",
+            marked.join(" and ")
+        ),
+    };
+    let springs = said_if(is_marked("ω_{c}"), " ω_{c}: the stiffest penalty spring on its node alone.");
     let caption = format!(
         "Properties of the schemes for an undamped oscillator of angular frequency ω; methods with the scheme of another \
-         one have its curve. Vertical lines: lowest (ω_{{1}}) and highest (ω_{{max}}) frequency of the model of the first \
-         arm at the longest (labelled) and the shortest time step.{springs} For a node constrained by a multiplier ωΔt → \
-         ∞, and only ρ∞ matters."
+         one have its curve.{lines}{springs} For a node constrained by a multiplier ωΔt → ∞, and only ρ∞ matters."
     );
     let name = "theory".into();
     let x_label = "ωΔt".into();

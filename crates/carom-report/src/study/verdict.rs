@@ -63,7 +63,7 @@ pub(super) fn section(study: &Study) -> Markup {
             div.beside {
                 dl {
                     (entry("Reasons", &verdict.reasons))
-                    @if !verdict.alike.is_empty() { (entry("Not distinguished, at no more cost", &[verdict.alike.join("; ")])) }
+                    @if !verdict.alike.is_empty() { (entry("Tied: not distinguished or within 5 %, at no more cost", &[verdict.alike.join("; ")])) }
                     (entry("Confidence", &verdict.confidence_reasons))
                 }
                 dl {

@@ -212,7 +212,7 @@ fn the_stable_step_is_where_central_differences_blow_up() {
         &[&COARSE[..], &["time.scheme={ kind = \"central-difference\" }", "time.step=3e-4"]].concat(),
     );
     let sim = carom_run::Setup::new(&coarse).start().unwrap();
-    let stable = stable_step(sim.model()).unwrap();
+    let stable = stable_step(sim.model(), &sim.state().configuration()).unwrap();
     assert!(stable.cell <= stable.power && stable.power < 3.0 * stable.cell, "{stable:?}");
     let step = format!("time.step={:e}", 0.75 / (0.75 / (0.99 * stable.power)).floor());
     let long =
@@ -223,6 +223,45 @@ fn the_stable_step_is_where_central_differences_blow_up() {
     let longest: f64 = longest.split_once(" s").unwrap().0.parse().unwrap();
     let ratio = longest / (SAFETY * stable.power);
     assert!((0.999..=1.0).contains(&ratio), "{rejected:?}");
+}
+
+/// A bar that starts compressed to a fifth, P = μ (F − 1/F), has dP/dF = μ (1 + F⁻²), 13 times its
+/// stiffness at rest: the stable step of lumped linear elements is h √(ρ/(dP/dF)).
+#[test]
+fn the_stable_step_is_that_of_the_start() {
+    let bar = |step: f64| {
+        let text = format!(
+            r#"
+dimension = 1
+[[material]]
+name = "m"
+law = "neo-hookean"
+density = 1.0
+young = 1.0
+poisson = 0.0
+[[body]]
+name = "bar"
+material = "m"
+element = "L2"
+mass = "lumped"
+mesh = {{ shape = "interval", min = 0.0, max = 1.0, cells = 40 }}
+position = ["0.2*X"]
+[[support]]
+name = "walls"
+on = ["bar.left", "bar.right"]
+fix = ["x"]
+[time]
+end = {}
+step = {step}
+scheme = {{ kind = "central-difference" }}
+"#,
+            10.0 * step
+        );
+        case(&text, &[""; 0])
+    };
+    let stable = 1.0 / 40.0 / 13.0_f64.sqrt();
+    let accepted = |share: f64| carom_run::Setup::new(&bar(share * stable)).start().is_ok();
+    assert!(accepted(0.99 * SAFETY) && !accepted(1.01 * SAFETY));
 }
 
 /// The explicit impact of the paper: indentation and end of contact agree with two unrelated codes.

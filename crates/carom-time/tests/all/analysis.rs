@@ -313,5 +313,12 @@ fn dispersion_and_overshoot() {
     let explicit = explicit.named(&explicit.members[0]).integrator().unwrap().explain();
     let Explained::Nonsmooth(explicit) = explicit else { panic!() };
     assert!(explicit.accuracy.iter().all(|row| row.dispersion.unwrap().abs() < 1e-9));
+    // Between impacts Moreau and Jean's scheme with θ = ½ is the trapezoidal rule.
+    let moreau = KINDS.iter().find(|kind| kind.name == "moreau-jean").unwrap();
+    let mut half = moreau.named(&moreau.members[0]);
+    half.parameters = [("theta", 0.5)].into();
+    let moreau = half.integrator().unwrap().explain();
+    let Explained::Nonsmooth(moreau) = moreau else { panic!() };
+    assert!((moreau.accuracy[1].dispersion.unwrap() - by_hand).abs() < 1e-9);
     assert!((explain(&Scheme::hu()).overshoot.velocity - (150.0 * 51.0 / 101.0 - 50.0) / 10.0).abs() < 1e-9);
 }

@@ -74,18 +74,31 @@ fn by_energy((manifest, rows): &(StudyManifest, Vec<Row>)) -> Ranking {
     Ranks { manifest, rows, compared: &vec![None; rows.len()], reference: None }.of(Goal::Energy)
 }
 
-/// Ranks by a goal of columns, with errors given for each run. Successive arms err in opposite
-/// directions, so that they are distinguished if their intervals have no point in common.
-fn by_columns(goal: Goal, (manifest, rows): &(StudyManifest, Vec<Row>), reference: &Reference) -> Ranking {
-    let compared = |(i, row): (usize, &Row)| {
-        let off = row.value("energy_error").unwrap_or_default();
-        let errors = vec![if i % 2 == 0 { off } else { -off }];
-        let deviation = Deviation { distance: Distance { smooth: off, rough: 0.0 }, errors };
+/// Ranks by a goal of columns, with the errors of each run as a vector.
+fn by_vectors(
+    goal: Goal,
+    (manifest, rows): &(StudyManifest, Vec<Row>),
+    reference: &Reference,
+    vector: impl Fn(usize) -> Vec<f64>,
+) -> Ranking {
+    let compared = |run: usize| {
+        let errors = vector(run);
+        let smooth = errors.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let deviation = Deviation { distance: Distance { smooth, rough: 0.0 }, errors };
         let each = |known: &Known| Some(vec![deviation.clone(); known.windows.len()]);
         Some(Compared { groups: reference.known.iter().map(each).collect(), ..Compared::default() })
     };
-    let compared: Vec<_> = rows.iter().enumerate().map(compared).collect();
+    let compared: Vec<_> = (0..rows.len()).map(compared).collect();
     Ranks { manifest, rows, compared: &compared, reference: Some(reference) }.of(goal)
+}
+
+/// Ranks by a goal of columns, with errors given for each run. Successive arms err in opposite
+/// directions, so that they are distinguished if their intervals have no point in common.
+fn by_columns(goal: Goal, study: &(StudyManifest, Vec<Row>), reference: &Reference) -> Ranking {
+    by_vectors(goal, study, reference, |run| {
+        let off = study.1[run].value("energy_error").unwrap_or_default();
+        vec![if run % 2 == 0 { off } else { -off }]
+    })
 }
 
 /// A reference whose displacements of 1 are known up to 1.25 `off`.
@@ -199,6 +212,29 @@ fn places_follow_from_intervals() {
     manifest.accuracy = None;
     let verdict = by_columns(Goal::Trajectory, &(manifest, rows), &reference(0.01)).verdict.unwrap();
     assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b 0".into()], Confidence::Medium));
+}
+
+/// Errors of 0.1 and 0.1002 whose difference has the length 0.004 are not distinguished by a
+/// reference that is uncertain by 0.0125 (the quotient is 0.005), but equal to 0.004/0.0875 < 5 %
+/// for every solution: no other arm is better by more. With a difference of 0.006 one may be.
+#[test]
+fn what_is_the_same_leaves_the_confidence_high() {
+    let of = |apart: f64| {
+        let runs = study(&[("a", 0, 0.1, 1.0), ("b", 0, 0.1002, 1.0), ("c", 0, 0.3, 1.0)]);
+        let (mut manifest, rows) = with_members(runs, &[&[0.1], &[0.1002], &[0.3]]);
+        manifest.accuracy = None;
+        // By the law of cosines.
+        let cosine = (0.1_f64.powi(2) + 0.1002_f64.powi(2) - apart.powi(2)) / (2.0 * 0.1 * 0.1002);
+        let second = vec![0.1002 * cosine, 0.1002 * (1.0 - cosine * cosine).sqrt()];
+        let errors = [vec![0.1, 0.0], second, vec![0.0, 0.3]];
+        by_vectors(Goal::Trajectory, &(manifest, rows), &reference(0.01), |run| errors[run % 3].clone())
+    };
+    let found = of(0.004);
+    assert_eq!(arms(&found), [(0, 1), (1, 1), (2, 3)]);
+    let verdict = found.verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b 0".into()], Confidence::High));
+    let verdict = of(0.006).verdict.unwrap();
+    assert_eq!((verdict.arm, verdict.alike, verdict.confidence), (0, vec!["b 0".into()], Confidence::Low));
 }
 
 /// By hand: with errors of 0.03 and 0.05 in the same direction, the solutions as far from one as

@@ -163,7 +163,7 @@ fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
     let mut lines = vec![String::new(), format!("recommended for the goal \"{goal}\": {name}")];
     lines.extend(verdict.reasons.iter().map(|reason| format!("  {reason}")));
     if !verdict.alike.is_empty() {
-        lines.push(format!("  not distinguished from it: {}", verdict.alike.join(" · ")));
+        lines.push(format!("  tied with it: {}", verdict.alike.join(" · ")));
     }
     lines.push(format!("confidence: {}", verdict.confidence.word()));
     lines.extend(verdict.confidence_reasons.iter().map(|reason| format!("  {reason}")));

@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
+use carom::Simulation;
 use carom::case::{
     Case, ContactSpec, Document, Enforcement, FileMesh, FormulaSpec, LoadKind, LoadSpec, MaterialSpec,
     MeshSpec, ObstacleMotion, PlaceSpec, PrimarySpec, SchemeSpec, SupportSpec, SurfaceSpec, gibibytes,
 };
-use carom::model::Model;
 use carom::stability::{SAFETY, stable_step};
 use carom_record::Warning;
 use carom_study::Plan;
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     // Started as `run` does, which finds everything that stops a run before its first step.
     let started = carom::Setup::new(&case).start();
     let simulation = started.map_err(|problems| Failure::Case(document.diagnose_all(&problems)))?;
-    let facts = Facts::of(&case, simulation.model());
+    let facts = Facts::of(&case, &simulation);
     let warnings = carom::warnings(&case, simulation.model());
     out::event(&serde_json::json!({
         "event": "check", "case": case, "model": facts, "memory": case.memory(), "warnings": warnings,
@@ -90,7 +90,8 @@ struct BodyFacts {
 }
 
 impl Facts {
-    fn of(case: &Case, model: &Model) -> Self {
+    fn of(case: &Case, start: &Simulation) -> Self {
+        let model = start.model();
         let d = model.dimension;
         let body = |part: &carom::model::BodyInstance| {
             let mesh = part.body.mesh();
@@ -104,7 +105,12 @@ impl Facts {
                 scaled_jacobian: mesh.scaled_jacobian(),
             }
         };
-        let stable = case.time.scheme.is_explicit().then(|| stable_step(model)).flatten();
+        let stable = case
+            .time
+            .scheme
+            .is_explicit()
+            .then(|| stable_step(model, &start.state().configuration()))
+            .flatten();
         Self {
             bodies: model.parts.iter().take(case.bodies.len()).map(body).collect(),
             tied: model.ties.iter().map(|tie| tie.tied.iter().map(Vec::len).sum()).collect(),
