@@ -6,12 +6,13 @@
 //! highest   x ← M⁻¹ K x (power iteration)
 //! ```
 //!
-//! σ begins with 1e-6 ω²_max and follows Rayleigh's quotient xᵀKx/xᵀMx down: the share of a
-//! mode ω₂ in that of the lowest one, ω₁, decreases by (ω₁² + σ)/(ω₂² + σ) in each iteration.
-//! The quotient gives ω² to twice the digits of x. Rigid modes have ω² below 1e-13 of the
-//! highest, their round-off, and are omitted. With a massless node the highest is infinite; σ
-//! then refers to the mean eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite
-//! element procedures", §11.2).
+//! σ begins with 1e-6 ω²_max and follows Rayleigh's quotient xᵀKx/xᵀMx down to 1e-11: the share
+//! of a mode ω₂ in that of the lowest one, ω₁, decreases by (ω₁² + σ)/(ω₂² + σ) in each
+//! iteration. What close modes have of each other, Ritz's method separates: eigenvalues of
+//! xᵢᵀKxⱼ of five vectors. Rigid modes have ω² below 1e-13 of the highest, their round-off, and
+//! are omitted. With a massless node the highest is infinite; σ then refers to the mean
+//! eigenvalue trace(K)/trace(M). Contact is open (Bathe, "Finite element procedures", §11.2,
+//! §11.6).
 //!
 //! A penalty spring on its node alone, the other side fixed:
 //!
@@ -22,6 +23,7 @@
 use std::sync::Arc;
 
 use carom_algebra::sums::dot;
+use carom_algebra::{Mat, principal_axes};
 
 use crate::contact::constraints::Constraints;
 use crate::linear::direct::Direct;
@@ -39,8 +41,15 @@ const VECTORS: usize = 63;
 const RIGID: f64 = 1e-13;
 /// The first shift σ, relative to the highest ω².
 const SHIFT: f64 = 1e-6;
-/// Quotient, relative to the shift, below which the shift follows.
+/// Quotient, relative to the shift, below which the shift follows, and the smallest shift relative
+/// to the largest ω² of rigid modes.
 const FOLLOWS: f64 = 0.1;
+const NEAREST: f64 = 100.0;
+/// Iterations of a rigid mode after the first whose quotient is round-off.
+const CLEANED: usize = 3;
+/// Number of frequencies, and of vectors that are separated for them.
+const LOWEST: usize = 3;
+const RITZ: usize = 5;
 
 /// Frequencies ω of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,7 +61,6 @@ pub struct Frequencies {
 }
 
 /// Frequencies of a model at a configuration; none if its tangent or its mass cannot be factored.
-/// Modes that inverse iteration does not find, and those beyond them, are left out.
 pub fn frequencies(model: &Model, at: &Configuration) -> Option<Frequencies> {
     let mut system = Direct::new(model);
     system.assemble(model, at).ok()?;
@@ -64,14 +72,14 @@ pub fn frequencies(model: &Model, at: &Configuration) -> Option<Frequencies> {
     });
     let mut search = Search { model, system, least: RIGID * scale, shift: SHIFT * scale, found: Vec::new() };
     search.factor()?;
-    let mut lowest = Vec::new();
-    while lowest.len() < 3 && search.found.len() < VECTORS.min(model.free.len()) {
-        let Some(square) = search.next() else { break };
-        if square > search.least {
-            lowest.push(square.sqrt());
+    let mut elastic = Vec::new();
+    while elastic.len() < RITZ && search.found.len() < VECTORS.min(model.free.len()) {
+        if search.next()? > search.least {
+            elastic.push(search.found.len() - 1);
         }
     }
-    lowest.sort_by(f64::total_cmp);
+    let mut lowest: Vec<f64> = search.separated(&elastic).into_iter().map(f64::sqrt).collect();
+    lowest.truncate(LOWEST);
     Some(Frequencies { lowest, highest: highest.map(f64::sqrt) })
 }
 
@@ -96,10 +104,12 @@ impl Search<'_> {
         Some(())
     }
 
-    /// The next ω²; none if it does not settle.
+    /// The next Rayleigh's quotient, that of a rigid mode or of the lowest ones that are left; none
+    /// if K + σM cannot be factored.
     fn next(&mut self) -> Option<f64> {
         let mut x = start(self.model, self.found.len() + 1);
         let mut square = f64::INFINITY;
+        let mut rigid = 0;
         for _ in 0..ITERATIONS {
             let mut y = solved(self.model, &mut self.system, &mass_product(self.model, &x))?;
             for (mode, mass) in &self.found {
@@ -109,19 +119,38 @@ impl Search<'_> {
             let quotient = normalise(self.model, &self.system, &mut y);
             x = y;
             let is_settled = (quotient - square).abs() <= SETTLED * quotient.abs();
-            if is_settled || quotient.abs() < self.least {
-                let mass = mass_product(self.model, &x);
-                self.found.push((x, mass));
-                return Some(quotient);
-            }
             square = quotient;
-            let follows = quotient.max(self.least);
+            // The first quotient that is round-off still has a share of deformation.
+            rigid += usize::from(quotient.abs() < self.least);
+            if is_settled || rigid > CLEANED {
+                break;
+            }
+            let follows = quotient.max(NEAREST * self.least);
             if follows < FOLLOWS * self.shift {
                 self.shift = follows;
                 self.factor()?;
             }
         }
-        None
+        let mass = mass_product(self.model, &x);
+        self.found.push((x, mass));
+        Some(square)
+    }
+
+    /// ω² in the span of some of the modes, ascending (W. Ritz).
+    fn separated(&self, modes: &[usize]) -> Vec<f64> {
+        let mut small = Mat::<RITZ>::ZERO;
+        for (i, &mode) in modes.iter().enumerate() {
+            let mut force = vec![0.0; self.model.free.len()];
+            self.system.stiffness_product(&self.found[mode].0, &mut force);
+            for (j, &other) in modes.iter().enumerate() {
+                small.0[i][j] = dot(&self.found[other].0, &force);
+            }
+        }
+        // Vectors that are missing have zeros.
+        let mut squares: Vec<f64> =
+            principal_axes(&small).values.into_iter().filter(|x| *x > self.least).collect();
+        squares.sort_by(f64::total_cmp);
+        squares
     }
 }
 

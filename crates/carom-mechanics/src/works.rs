@@ -27,7 +27,7 @@
 //!
 //! In the trapezoidal and the midpoint rule Δy is Δt (v_s + v⁻)/2, and nothing changes. With
 //! another path the time integrator would seem to take a part of the impact, which does not vanish
-//! with the step.
+//! with the step. Supports and obstacles have Δy as their path.
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
@@ -35,9 +35,10 @@
 //! its mean acceleration, and the impulse M J is one of the supports, too.
 
 use carom_algebra::sums::dot;
+use carom_contact::{Row, Rows};
 use carom_time::Stage;
 
-use crate::friction_state::friction_forces;
+use crate::friction_state::{each_slip, friction_forces};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 use crate::state::{Ledger, Means, State};
@@ -117,8 +118,9 @@ impl Works {
     }
 
     /// What the impulses of a step in which gaps close work at the mean velocity beyond what the
-    /// works of the step have; `next` is as it was for these. That of supports and obstacles, which
-    /// velocities are ahead of, is booked with the projection (`carried.rs`).
+    /// works of the step have; `next` is as it was for these. Of the α family those of contacts
+    /// whose velocities are projected, of other schemes, which know mean forces only, of all. What
+    /// velocities are ahead of supports and obstacles is booked with the projection (`carried.rs`).
     pub(crate) fn beyond_path(
         equations: &Equations,
         last: &Evaluation,
@@ -128,29 +130,63 @@ impl Works {
     ) -> Self {
         let Equations { model, state, stage, .. } = equations;
         let increment = &last.at.increment;
-        let turned = turned_friction(last, next);
-        let mut works = Self::default();
+        let mut path = increment.clone();
+        // Supports and obstacles have their own motion, and massless dofs no impulse.
+        for i in model.free.iter().copied().filter(|&i| !model.massless[i]) {
+            path[i] = 0.5 * dt * (state.v[i] + next.v[i]);
+        }
+        model.points.carry(&mut path);
+        if stage.works_at_both_ends {
+            return Self::beyond_path_of_pairs(equations, last, &path, dt);
+        }
         let at = |forces: &[f64], i: usize| forces.get(i).copied().unwrap_or(0.0);
-        for i in (0..model.dofs()).filter(|&i| !model.massless[i]) {
-            let path = 0.5 * dt * (state.v[i] + next.v[i]);
-            let [contact, friction] = if stage.works_at_both_ends {
-                let [averaged, at_end] = [stage.weights.contact, 1.0]
-                    .map(|weight| path * gamma(stage, dt) * weight / stage.weights.mass - 0.5 * increment[i]);
-                let contact = next.f_contact[i] + at(&turned, i) - state.f_contact[i];
-                let friction = at(&next.f_friction, i) + at(&turned, i) - at(&state.f_friction, i);
-                let contact_at_end = at(&next.f_at_end, i) - at(&state.f_at_end, i);
-                let friction_at_end = at(&next.f_friction_at_end, i) - at(&state.f_friction_at_end, i);
-                [[contact, contact_at_end], [friction, friction_at_end]]
-                    .map(|[all, end]| averaged * (all - end) + at_end * end)
-            } else {
-                let contact = means.contact[i] - state.f_contact[i];
-                let friction = at(&means.friction, i) - at(&state.f_friction, i);
-                [contact, friction].map(|change| (path - increment[i]) * change)
-            };
-            works.contact += contact;
-            works.friction += friction;
+        let mut works = Self::default();
+        for i in 0..increment.len() {
+            let beyond = path[i] - increment[i];
+            works.contact += beyond * (means.contact[i] - state.f_contact[i]);
+            works.friction += beyond * (at(&means.friction, i) - at(&state.f_friction, i));
         }
         works
+    }
+
+    /// [`Works::beyond_path`] of the α family, pair by pair.
+    fn beyond_path_of_pairs(equations: &Equations, last: &Evaluation, path: &[f64], dt: f64) -> Self {
+        let Equations { model, state, stage, .. } = equations;
+        let increment = &last.at.increment;
+        let is_constraint = friction_is_constraint(equations);
+        // The share of a force in the velocities, and that with which it is booked along the path.
+        let beyond = |k: usize, row: Row, is_friction: bool| {
+            let weight = if model.contacts[k].at_the_end { 1.0 } else { stage.weights.contact };
+            let share = gamma(stage, dt) * weight / stage.weights.mass;
+            let booked = if is_friction && !is_constraint { weight } else { 0.5 };
+            share * row.along(path) - booked * row.along(increment)
+        };
+        let mut normal = 0.0;
+        let mut friction = 0.0;
+        let mut rows = Rows::new(model.dimension);
+        let contacts = model.contacts.iter().enumerate().filter(|(_, contact)| contact.projects);
+        for (k, contact) in contacts {
+            for (p, pair) in last.at.pairings[k].pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
+                normal += pair.lambda * beyond(k, last.rows[k].row(p), false);
+                if contact.friction.is_some() {
+                    for (row, traction) in last.slip_rows((k, p)).zip(pair.tangential.traction) {
+                        friction += traction * beyond(k, row, true);
+                    }
+                }
+            }
+            for pair in state.pairs[k].iter().filter(|pair| pair.active) {
+                rows.clear();
+                if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok() {
+                    normal -= pair.lambda * beyond(k, rows.row(0), false);
+                }
+            }
+        }
+        each_slip(model, state, |k, _, traction, row| {
+            if model.contacts[k].projects {
+                friction -= traction * beyond(k, row, true);
+            }
+        });
+        Self { external: 0.0, contact: normal + friction, friction }
     }
 
     /// Books the works of friction apart from those of contact.

@@ -143,7 +143,7 @@ struct Level {
 fn levels_of_reference(file: &StudyFile, case: &Case, step: f64) -> Option<Vec<Level>> {
     let least = (case.time.end / step * file.fine.refine as f64 * (1.0 - 1e-9)).ceil();
     let is_one_mesh = file.fine.mesh == [1.0];
-    let halves = case.bodies.iter().all(|body| body.mesh.may_be_refined(1.5));
+    let halves = case.bodies.iter().all(|body| body.mesh.is_divided_exactly(1.5));
     let factors: &[f64] = match &file.fine.mesh[..] {
         [] if case.dimension == 3 && halves => &[1.0, 1.5, 2.0],
         [] if case.dimension == 3 => &[1.0, 2.0],

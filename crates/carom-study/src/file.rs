@@ -92,9 +92,10 @@ pub(crate) struct Fine {
     #[key(Count(1), default = "8")]
     pub(crate) refine: usize,
     /// Factors by which its meshes are finer than that of the case, one for each run, the coarsest
-    /// first; the steps shrink by the same factors, down to the finest one. Default: 1 and 2, with
-    /// 3 in the plane and 4 in one dimension. With 1 alone, only the steps are refined, and nothing
-    /// is established.
+    /// first; the steps shrink by the same factors, down to the finest one. Default: 1, 2 and 4 in
+    /// one dimension, 1, 2 and 3 in the plane, and 1, 1.5 and 2 in space (1 and 2 where cells
+    /// cannot be smaller by exactly 1.5). With 1 alone, only the steps are refined, and nothing is
+    /// established.
     #[key(Numbers(FACTOR), optional = "[1, 2, 4]", with = factors)]
     pub(crate) mesh: Vec<f64>,
 }

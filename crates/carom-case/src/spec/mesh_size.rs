@@ -62,14 +62,15 @@ impl MeshSpec {
         self
     }
 
-    /// Whether the numbers of cells remain whole with cells smaller by a factor.
-    pub fn may_be_refined(&self, factor: f64) -> bool {
+    /// Whether cells are smaller by exactly a factor: numbers of cells remain whole. Those
+    /// of shapes that are given by the size of their cells are rounded up.
+    pub fn is_divided_exactly(&self, factor: f64) -> bool {
         let are_whole = |cells: &[usize]| cells.iter().all(|n| whole(factor, *n));
         match self {
             Self::Interval { cells, .. } => are_whole(&[*cells]),
             Self::Rectangle { cells, .. } => are_whole(cells),
             Self::Box { cells, .. } => are_whole(cells),
-            Self::Extrusion { of, layers, .. } => of.may_be_refined(factor) && are_whole(&[*layers]),
+            Self::Extrusion { of, layers, .. } => of.is_divided_exactly(factor) && are_whole(&[*layers]),
             Self::File(file) => are_whole(&[file.parts]),
             Self::Disc { .. }
             | Self::HalfDisc { .. }
@@ -77,7 +78,7 @@ impl MeshSpec {
             | Self::Ball { .. }
             | Self::Cylinder { .. }
             | Self::Tube { .. }
-            | Self::Polygon { .. } => true,
+            | Self::Polygon { .. } => false,
         }
     }
 

@@ -173,7 +173,7 @@ pub fn no_rebound(run: &Run) -> Option<&'static str> {
     match Impact::first(run) {
         Ok(Impact { separation: Some(separation), .. }) if separation >= 0.0 => None,
         Ok(Impact { separation: Some(_), .. }) => {
-            Some("the bodies still approach when the first contact ends")
+            Some("the bodies approach each other when the first contact ends")
         }
         Ok(_) => Some("the first contact lasts to the end of the run"),
         Err(why) => Some(why),

@@ -41,7 +41,8 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
         return None;
     }
     if i == after {
-        return Some((t[i], top - y[0]));
+        // It may fall already when the contact ends.
+        return (after > 0 && y[after] >= y[after - 1]).then_some((t[i], top - y[0]));
     }
     let slope = |a: usize, b: usize| (y[b] - y[a]) / (t[b] - t[a]);
     let left = slope(i - 1, i);

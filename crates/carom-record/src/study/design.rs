@@ -53,7 +53,7 @@ impl Goal {
         (
             "friction",
             Goal::Friction,
-            "mean of the errors of friction's work and of the share of the time in contact that nodes stick",
+            "root mean square of the errors of friction's work and of the share of the time in contact that nodes stick",
         ),
         ("trajectory", Goal::Trajectory, "deviation of displacements and centres"),
         ("cost", Goal::Cost, "counted cost of arms whose displacements are within `accuracy`"),

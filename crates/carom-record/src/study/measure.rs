@@ -148,8 +148,9 @@ impl Judge<'_> {
         let words = known.iter().map(|(name, right, _)| {
             if *right == 0.0 { format!("{name} (exactly 0)") } else { format!("error of {name}") }
         });
+        let words = words.collect::<Vec<_>>().join(" and ");
         let measure = Measure {
-            words: words.collect::<Vec<_>>().join(" and "),
+            words: if known.len() > 1 { format!("root mean square of {words}") } else { words },
             uncertainty: relative.fold(ROUND_OFF, f64::max),
             noise: None,
             left_out,

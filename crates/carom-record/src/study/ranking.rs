@@ -221,8 +221,14 @@ impl Ranks<'_> {
         let motion = motions.filter_map(|known| known.group.motion(finest)).reduce(f64::max)?;
         let own = row.value("penetration")?;
         let right = finest.value("penetration").unwrap_or(0.0);
-        let is_deep = own - right > DEEP * motion;
-        is_deep.then(|| format!("it penetrates by {}, {} of the motion", short(own), short(own / motion)))
+        let beyond = (own - right) / motion;
+        (beyond > DEEP).then(|| {
+            format!(
+                "it penetrates by {}, {} of the motion more than the reference, and {DEEP} at most is allowed",
+                short(own),
+                short(beyond)
+            )
+        })
     }
 }
 

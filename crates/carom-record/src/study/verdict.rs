@@ -200,9 +200,7 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
     let is_settled = |r: &Ranked| (field.is_better)(chosen.arm, r.arm) || (field.is_same)(chosen.arm, r.arm);
     let open = field.rivals(chosen).filter(|r| !is_settled(r));
     if let Some(next) = field.least(open, |r| r.error) {
-        let is_clear = next.error > CLEAR * chosen.error;
-        let most = if is_clear { Confidence::Medium } else { Confidence::Low };
-        at_most(most, format!("not distinguished from {}: {}", field.name(next), known(next)));
+        at_most(Confidence::Low, format!("not distinguished from {}: {}", field.name(next), known(next)));
     }
     if let Some(accuracy) = field.required() {
         let cheaper = field.ranked.iter().filter(|r| EQUAL_COST * r.cost < chosen.cost);

@@ -6,7 +6,6 @@ use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
 use super::collected::{in_time, time_unit};
-use super::comparison::methods;
 use crate::digits::{count, three};
 use crate::document::{joined, or_dash};
 use crate::labels::capitalised;
@@ -41,7 +40,9 @@ pub(super) fn section(study: &Study) -> Markup {
         }
     };
     let arm = &study.manifest.arms[verdict.arm];
-    let mut sets: Vec<String> = arm.sets_without_step().cloned().collect();
+    // What is written is no part of the recommendation.
+    let mut sets: Vec<String> =
+        arm.sets_without_step().filter(|set| !set.starts_with("output.")).cloned().collect();
     // The step of a design is among the settings to copy.
     if arm.role.method.is_some() || sets.len() < arm.sets.len() {
         sets.extend(step(arm, "time.step").map(|h| format!("time.step={h}")));
@@ -63,7 +64,7 @@ pub(super) fn section(study: &Study) -> Markup {
             div.beside {
                 dl {
                     (entry("Reasons", &verdict.reasons))
-                    @if !verdict.alike.is_empty() { (entry("Tied: not distinguished or within 5 %, at no more cost", &[verdict.alike.join("; ")])) }
+                    @if !verdict.alike.is_empty() { (entry("Tied: not distinguished or within 5 %, at 1.1 times its cost at most", &[verdict.alike.join("; ")])) }
                     (entry("Confidence", &verdict.confidence_reasons))
                 }
                 dl {
@@ -79,11 +80,11 @@ pub(super) fn section(study: &Study) -> Markup {
     }
 }
 
-/// The values of finished arms at the level of an arm, itself included.
+/// The values of ranked arms at the level of an arm, itself included.
 fn of_level(study: &Study, arm: usize, value: impl Fn(usize) -> Option<f64>) -> Vec<f64> {
-    let level = |arm: usize| study.manifest.arms[arm].role.level;
-    let arms = methods(study).into_iter().flat_map(|(_, arms)| arms);
-    arms.filter(|other| level(*other) == level(arm)).filter_map(value).collect()
+    let levels = study.ranking.iter().flat_map(|ranking| &ranking.levels);
+    let level = levels.filter(|level| level.iter().any(|ranked| ranked.arm == arm));
+    level.flatten().filter_map(|ranked| value(ranked.arm)).collect()
 }
 
 fn costs(study: &Study, arm: usize) -> String {

@@ -150,6 +150,8 @@ fn rigid_motions_and_a_stretch() {
     let found = at_start(&format!("{material}{}{}[time]{time}", body("a", 0.0), body("b", 5.0)));
     assert_eq!(found.lowest.len(), 3);
     assert!((found.lowest[1] / found.lowest[0] - 1.0).abs() < 1e-6, "{found:?}");
+    let alone = at_start(&format!("{material}{}[time]{time}", body("a", 0.0)));
+    assert!((found.lowest[0] / alone.lowest[0] - 1.0).abs() < 1e-6, "{found:?} {alone:?}");
 
     let stretched = r#"
 dimension = 1
@@ -177,4 +179,26 @@ scheme = { kind = "newmark", beta = 0.25, gamma = 0.5 }
     let right = PI * (0.5_f64 * 1.25).sqrt();
     let lowest = at_start(stretched).lowest[0];
     assert!((lowest / right - 1.0).abs() < 1e-3, "{lowest} instead of {right}");
+}
+
+/// Two bars of nearly the same length have close modes, ω_k = kπc/L of each.
+#[test]
+fn close_modes() {
+    let bar = |name: &str, x: f64, length: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmaterial = \"m\"\nelement = \"L3\"\n\
+             mesh = {{ shape = \"interval\", min = {x}, max = {}, cells = 20 }}\n",
+            x + length
+        )
+    };
+    let (of_beam, rest) = SLENDER.split_once("[[body]]").unwrap();
+    let (_, time) = rest.split_once("[time]").unwrap();
+    let material = of_beam.replace("dimension = 2\nplane = \"stress\"", "dimension = 1");
+    let found =
+        at_start(&format!("{material}{}{}[time]{time}", bar("a", 0.0, 1.0), bar("b", 5.0, 1.001))).lowest;
+    let right = [PI / 1.001, PI, 2.0 * PI / 1.001];
+    assert_eq!(found.len(), 3);
+    for (omega, right) in found.iter().zip(right) {
+        assert!((omega / right - 1.0).abs() < 1e-4, "{found:?} instead of {right:?}");
+    }
 }
