@@ -226,15 +226,24 @@ fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
     let grey = said_if(single && is_fitted, " Grey: 95 % confidence interval of the line.");
     let is_left_out = groups.iter().flat_map(|group| &group.arms).any(|arm| study.rows[*arm].is_unsound());
     let left_out = said_if(is_left_out, " Arms that failed or created energy are left out.");
+    let only = only(study, groups).map_or_else(String::new, |arms| format!(" Arms: {arms}."));
     Some(Plot {
         name: format!("trend-{}", file_name(key)),
-        caption: format!("{which} against `{key}`.{lines}{grey}{left_out}"),
+        caption: format!("{which} against `{key}`.{only}{lines}{grey}{left_out}"),
         x_label: axis(study, key),
         log: [wide, false],
         across: 3,
         panes,
         ..Plot::default()
     })
+}
+
+/// The arms of a single group, which has no legend, if the study has others.
+fn only(study: &Study, groups: &[Refinement]) -> Option<String> {
+    let [group] = groups else { return None };
+    let others = (0..study.manifest.arms.len()).any(|arm| !group.arms.contains(&arm));
+    let names = group.arms.iter().map(|arm| study.manifest.arms[*arm].name.as_str());
+    others.then(|| names.collect::<Vec<_>>().join("; "))
 }
 
 /// The methods of groups, if each is of one, or their settings without those that all of them have.
