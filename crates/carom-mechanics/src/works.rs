@@ -117,10 +117,11 @@ impl Works {
         Self { external, contact: dot(increment, &means.contact), friction }
     }
 
-    /// What the impulses of a step in which gaps close work at the mean velocity beyond what the
-    /// works of the step have; `next` is as it was for these. Of the α family those of contacts
-    /// whose velocities are projected, of other schemes, which know mean forces only, of all. What
-    /// velocities are ahead of supports and obstacles is booked with the projection (`carried.rs`).
+    /// Correction of the works of a step in which gaps close: contact impulses times the mean
+    /// velocity, less their work along the path Δy that is already booked. `next` has velocities
+    /// before the projection. The α family counts impulses of contacts whose velocities are
+    /// projected; other schemes know mean forces only, and count those of all contacts. The work of
+    /// supports and obstacles is booked with the projection (`carried.rs`).
     pub(crate) fn beyond_path(
         equations: &Equations,
         last: &Evaluation,

@@ -147,7 +147,8 @@ impl<'a> Setup<'a> {
         let simulation = Simulation::new(model, stepper, grid, inertia, before, threads)
             .map_err(|rejected| vec![no_start(case, placed, &obstacles, &rejected)])?;
         // The start may be that of another run, or one without overlaps.
-        let (model, state) = (simulation.model(), simulation.state());
+        let model = simulation.model();
+        let state = simulation.state();
         let is_moved = state.y != model.initial_position;
         let problems = if is_moved { too_long(case, model, &state.configuration()) } else { Vec::new() };
         if problems.is_empty() { Ok(simulation.with_fallback(fallback)) } else { Err(problems.into()) }

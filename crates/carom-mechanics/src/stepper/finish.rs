@@ -28,9 +28,9 @@ pub(super) struct Finish<'a> {
     pub carried: f64,
     /// ½ − α_f − c of the forces by which velocities are ahead (`works.rs`); 0 of other schemes.
     pub leads: [f64; 2],
-    /// What impulses work beyond the works of the step, if gaps close and velocities are projected
-    /// (`works.rs`); none of explicit and impulse schemes, whose works have them, and of the
-    /// fallback.
+    /// Correction of the booked works for contact impulses, which work at the mean velocity
+    /// (`works.rs`). Used if gaps close and velocities are projected; zero in explicit and impulse
+    /// schemes and in the fallback.
     pub impulses: Works,
     /// The parts of the step, to find when nodes met the other side; none if that is not asked.
     pub paths: Vec<Path<'a>>,

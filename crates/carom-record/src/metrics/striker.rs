@@ -41,7 +41,7 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
         return None;
     }
     if i == after {
-        // It may fall already when the contact ends.
+        // A striker that falls when the contact ends has no apex after it.
         return (after > 0 && y[after] >= y[after - 1]).then_some((t[i], top - y[0]));
     }
     let slope = |a: usize, b: usize| (y[b] - y[a]) / (t[b] - t[a]);

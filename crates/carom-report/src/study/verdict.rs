@@ -40,7 +40,7 @@ pub(super) fn section(study: &Study) -> Markup {
         }
     };
     let arm = &study.manifest.arms[verdict.arm];
-    // What is written is no part of the recommendation.
+    // Settings of the output files are no part of the recommendation.
     let mut sets: Vec<String> =
         arm.sets_without_step().filter(|set| !set.starts_with("output.")).cloned().collect();
     // The step of a design is among the settings to copy.

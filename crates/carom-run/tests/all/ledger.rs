@@ -80,7 +80,7 @@ pub(super) fn of_alpha(model: &Model, scheme: &Scheme, before: &State, now: &Sta
     let inertia = times_mass(model, &mean_a);
     let change = times_mass(model, &sum(&v, -1.0, &before.v));
     let prescribed: Vec<usize> = model.motions.dofs().collect();
-    // Of the force at the end, velocities have the share γ (1 − α_f)/(1 − α_m).
+    // Share of the contact force at the step's end in the velocity update: γ (1 − α_f)/(1 − α_m).
     let weight = if acts_at_end > 0 { 1.0 } else { 1.0 - scheme.alpha_f };
     let share = scheme.gamma * weight / (1.0 - scheme.alpha_m);
     let work = |i: usize| {
