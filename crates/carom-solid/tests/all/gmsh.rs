@@ -10,7 +10,7 @@ use carom_solid::{Element, Law, Mesh, body};
 const ELEMENTS: [Element; 3] = [Element::T3, Element::T6, Element::T10];
 
 fn bytes(name: &str) -> Vec<u8> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/msh").join(name);
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("msh").join(name);
     std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 

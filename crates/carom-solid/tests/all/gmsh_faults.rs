@@ -9,7 +9,7 @@ use carom_solid::{Element, Mesh, Positions, generate};
 use super::random::{integer, lists};
 
 fn fixtures() -> Vec<(String, Vec<u8>)> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/msh");
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("msh");
     let mut all: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
         .map(|e| e.unwrap().path())

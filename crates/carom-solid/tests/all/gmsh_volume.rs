@@ -7,7 +7,7 @@ use carom_solid::gmsh::{self, Fault, MshError};
 use carom_solid::{Element, Facet, Mesh};
 
 fn read(name: &str) -> Mesh {
-    let path = format!("{}/tests/msh/{name}.msh", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/msh/{name}.msh", env!("CARGO_MANIFEST_DIR"));
     gmsh::read(&std::fs::read(path).unwrap()).unwrap().volume("eighth").unwrap()
 }
 
@@ -75,7 +75,7 @@ fn hexahedra_and_their_base() {
         ("sector_order2", Element::Hex27, 3e-4),
         ("sector_order2_22_binary", Element::Hex27, 3e-4),
     ] {
-        let path = format!("{}/tests/msh/{name}.msh", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/msh/{name}.msh", env!("CARGO_MANIFEST_DIR"));
         let file = gmsh::read(&std::fs::read(path).unwrap()).unwrap();
         let (mesh, plane) = (file.volume("wedge").unwrap(), file.body("sector").unwrap());
         assert_eq!((mesh.element, mesh.cell_count()), (element, 24));
