@@ -34,9 +34,10 @@ pub mod velocity;
 mod works;
 mod workspace;
 
+pub use check::inside::{DeepPlace, inside};
 pub use check::overlap::depths;
 pub use check::overlapping::Overlap;
-pub use check::penetration::{Depths, Penetration, inside, penetration};
+pub use check::penetration::{Depths, Penetration, penetration};
 pub use check::undeclared::Undeclared;
 pub use friction_state::each_slip;
 pub use grid::Grid;

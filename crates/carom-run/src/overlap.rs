@@ -84,7 +84,7 @@ pub fn overlapping(case: &Case, model: &Model) -> Vec<OverlapNode> {
     let mut nodes = Vec::new();
     // Behind a side, but outside its body, nothing overlaps.
     let overlap: BTreeSet<usize> =
-        carom_mechanics::inside(model, y, CLOSED * model.scale).into_iter().map(|(k, ..)| k).collect();
+        carom_mechanics::inside(model, y, CLOSED * model.scale).iter().map(|place| place.contact).collect();
     for (k, depths) in depths(model, y).iter().enumerate() {
         let keeps = matches!(case.contacts[k].overlap, Overlap::KeepGap | Overlap::Touch);
         let is_treated = keeps || case.contacts[k].overlap == Overlap::Relax;

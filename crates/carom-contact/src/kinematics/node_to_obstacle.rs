@@ -289,7 +289,7 @@ impl Kinematics for NodeToObstacle {
     }
 
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        Some(self.distance_to_obstacle(self.secondary[node], y)? + self.slack(node))
+        Some(self.distance_to_obstacle(self.secondary[node], y)? + self.kept(node))
     }
 
     fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {

@@ -1,5 +1,6 @@
 //! Checks of positions that no equation asks for: depths, overlaps, valid cells.
 
+pub mod inside;
 pub(crate) mod overlap;
 pub(crate) mod overlapping;
 pub mod penetration;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
 use crate::check::tips::{Pierced, Tips};
-use crate::check::watched::{Way, edge_points, first_of_earlier, has_gaps, keeps, lengths, watched};
+use crate::check::watched::{Way, edge_points, first_of_earlier, has_gaps, lengths, watched};
 use crate::model::{BodyInstance, Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
@@ -429,47 +429,13 @@ impl Penetration {
         }
         found
     }
-
-    /// As the function [`inside`], for positions that follow each other. What is measured so is not
-    /// for `Penetration::check`.
-    pub fn inside(&mut self, model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
-        self.begin(model, y);
-        for way in &mut self.ways {
-            // Where nodes keep depths, points between those of an edge deviate by as much as facets
-            // do from what they stand for: they are judged as in every step.
-            let keeps = way.contact.is_some_and(|contact| keeps(&model.contacts[contact]));
-            let exact = way.nodes.iter_mut().filter(|watched| !keeps || watched.between.is_empty());
-            exact.for_each(|watched| watched.share = 0.0);
-        }
-        let mut found: Vec<(usize, usize, f64)> = Vec::new();
-        for k in 0..self.ways.len() {
-            let deepest = self.deepest(model, k, None);
-            let of_contact = deepest.beyond.zip(self.ways[k].contact);
-            found.extend(of_contact.map(|(inside, contact)| (contact, inside.node, inside.depth)));
-        }
-        // Chords of facets lie in what their nodes touch.
-        let is_too_deep =
-            |p: &Pierced| p.depth > if p.is_held { p.limit.min(p.counts + limit) } else { p.limit };
-        let pierced = self.pierced(model, y).into_iter().filter(|(.., p)| is_too_deep(p));
-        found.extend(pierced.map(|(contact, _, pierced)| (contact, pierced.node, pierced.depth)));
-        for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| has_gaps(model, contact))
-        {
-            let secondary =
-                contact.kinematics.secondary().iter().enumerate().take(contact.kinematics.nodes());
-            let depth =
-                |(place, &node)| (k, node, -contact.kinematics.signed_distance(place, y).unwrap_or(0.0));
-            found.extend(secondary.map(depth));
-            found.extend(below_obstacle(contact, y).map(|(node, depth)| (k, node, depth)));
-        }
-        found.retain(|(.., depth)| *depth > limit);
-        found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
-        found.dedup_by_key(|(contact, ..)| *contact);
-        found
-    }
 }
 
 /// The depths of nodes in a rigid obstacle that only their mean holds, less those that they keep.
-fn below_obstacle<'a>(contact: &'a Contact, y: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+pub(crate) fn below_obstacle<'a>(
+    contact: &'a Contact,
+    y: &'a [f64],
+) -> impl Iterator<Item = (usize, f64)> + 'a {
     let kept: BTreeMap<usize, f64> = contact.kinematics.kept_at_nodes().into_iter().collect();
     let of_field = contact.facets.iter().filter(|_| contact.kinematics.is_of_field(0));
     let nodes: BTreeSet<usize> = of_field.flat_map(|(_, facets)| facets.iter().flatten().copied()).collect();
@@ -482,12 +448,6 @@ fn below_obstacle<'a>(contact: &'a Contact, y: &'a [f64]) -> impl Iterator<Item 
 /// Penetration at a state.
 pub fn penetration(model: &Model, state: &State) -> Depths {
     Penetration::of_contacts(model).measure(model, state).depths
-}
-
-/// The deepest node of each contact in which a node lies deeper than `limit` at positions `y`:
-/// (contact, node, depth).
-pub fn inside(model: &Model, y: &[f64], limit: f64) -> Vec<(usize, usize, f64)> {
-    Penetration::of_contacts(model).inside(model, y, limit)
 }
 
 /// Depth over the length of a facet that a chord of it may feign.

@@ -1,6 +1,7 @@
 //! Bodies that overlap at the start.
 
 use carom_case::{Case, Overlap, PrimarySpec, Problem};
+use carom_mechanics::DeepPlace;
 use carom_mechanics::model::{BodyInstance, Model};
 
 use super::side::{coordinates, owner};
@@ -16,7 +17,8 @@ const ROUND_OFF: f64 = 1e-9;
 pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> bool) -> Vec<Problem> {
     let x = &model.initial_position;
     let unit = &case.units.length;
-    let problem = |(k, node, depth): (usize, usize, f64)| {
+    let problem = |found: DeepPlace| {
+        let DeepPlace { contact: k, node, depth, is_mean } = found;
         let place = coordinates(&x[node * model.dimension..(node + 1) * model.dimension]);
         let name = &model.contacts[k].name;
         let owner = owner(&model.parts, node).map_or("", |part| part.name.as_str());
@@ -28,6 +30,21 @@ pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> b
             PrimarySpec::Surface(_) => ("behind the rigid surface", "give the surface the other `reverse`, "),
             _ => ("inside the other side's body", ""),
         };
+        let what =
+            format!("the bodies of contact \"{name}\" overlap at the start by {}", quantity(depth, unit));
+        let by = at_least(depth, unit);
+        if is_mean {
+            return Problem::new(
+                format!("contact[{}]", case.contacts[k].entry),
+                what,
+                format!(
+                    "near {place} the side of \"{owner}\" lies {inside} on average, between nodes that lie on it; closing the overlap within one step would drive the bodies apart"
+                ),
+                format!(
+                    "give the contact overlap = \"touch\", with which the sides touch as they are, move a body by at least {by}, or use smaller cells there"
+                ),
+            );
+        }
         let chord = deviation(model, k, node);
         let (straight, curved) = if chord > ROUND_OFF * model.scale {
             let chord = quantity(chord, unit);
@@ -40,19 +57,18 @@ pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> b
         };
         Problem::new(
             format!("contact[{}]", case.contacts[k].entry),
-            format!("the bodies of contact \"{name}\" overlap at the start by {}", quantity(depth, unit)),
+            what,
             format!(
                 "the node of \"{owner}\" at {place} lies {inside}{straight}; closing the overlap within one step would drive the bodies apart"
             ),
             format!(
-                "move a body by at least {}, {turn}{curved}or give the contact overlap = \"relax\" or \"keep-gap\"",
-                at_least(depth, unit)
+                "move a body by at least {by}, {turn}{curved}or give the contact overlap = \"relax\" or \"keep-gap\""
             ),
         )
     };
     let mut found = carom_mechanics::inside(model, x, ROUND_OFF * model.scale);
-    found.retain(|(k, ..)| counts(case.contacts[*k].overlap));
-    let is_known = |contact: usize| found.iter().any(|(k, ..)| *k == contact);
+    found.retain(|place| counts(case.contacts[place.contact].overlap));
+    let is_known = |contact: usize| found.iter().any(|place| place.contact == contact);
     let others = (0..case.contacts.len()).filter(|&k| counts(case.contacts[k].overlap) && !is_known(k));
     let at_one_place: Vec<Problem> = others.filter_map(|k| at_one_place(case, model, k)).collect();
     found.into_iter().map(problem).chain(at_one_place).collect()

@@ -147,7 +147,7 @@ impl<'a> Scene<'a> {
             let time = from + (to - from) * f64::from(k) / f64::from(INSTANTS);
             let y = self.positions(time);
             let acting = self.contacts.inside(self.model, &y, INSIDE * self.model.scale);
-            if acting.into_iter().any(|(contact, ..)| covering.contains(&contact)) {
+            if acting.iter().any(|place| covering.contains(&place.contact)) {
                 return None;
             }
             if self.undeclared.overlapping(self.model, &y).contains(&overlap) {

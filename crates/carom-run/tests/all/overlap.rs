@@ -144,3 +144,94 @@ fn bodies_at_one_place() {
     assert!(problems[0].what.ends_with("overlap at the start"), "{problems:?}");
     assert!(problems[0].why.starts_with("both \"left\" and \"right\" are at"), "{problems:?}");
 }
+
+/// A ring of straight cells on a rigid core as wide as its hole, pressed from outside.
+const SLEEVE: &str = r#"
+dimension = 2
+plane = "strain"
+material = [{ name = "steel", law = "hencky", density = 1.0, young = 200e3, poisson = 0.3 }]
+[[body]]
+name = "ring"
+material = "steel"
+element = "T3"
+mesh = { shape = "ring", inner = 50.0, outer = 80.0, center = [0.0, 0.0], size = 5.0 }
+[[load]]
+on = ["ring.outer"]
+pressure = "40 * t"
+[[contact]]
+name = "fit"
+secondary = "ring.inner"
+primary = { circle = { center = [0.0, 0.0], radius = 50.0 } }
+method = "mortar"
+mu = 0.3
+[time]
+end = 1.0
+step = 0.5
+scheme = { kind = "static" }
+[[probe]]
+name = "rim"
+body = "ring"
+at = [80.0, 0.0]
+record = ["ux"]
+"#;
+
+/// On average, chords whose nodes lie on an obstacle lie inside it.
+#[test]
+fn chords_in_a_circle_are_refused_or_touch() {
+    let text = Setup::new(&case(SLEEVE, &[""; 0])).start().err().unwrap().to_string();
+    // Two thirds of h²/8R of the facets, 64 of them around the hole.
+    assert!(text.contains("overlap at the start by 0.0401"), "{text}");
+    assert!(text.contains("on average") && text.contains("overlap = \"touch\""), "{text}");
+    // Lamé: u = A r + B/r with u(50) = 0 and σ_r(80) = −40.
+    let (young, poisson) = (200e3, 0.3);
+    let (a2, b2): (f64, f64) = (2500.0, 6400.0);
+    let stiffness = young / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+    let slope = -40.0 / (stiffness * (1.0 + (1.0 - 2.0 * poisson) * a2 / b2));
+    let exact = slope * (80.0 - a2 / 80.0);
+    for overlap in ["touch", "keep-gap"] {
+        let end = finish(simulation(SLEEVE, &[format!("contact.fit.overlap={overlap}")]));
+        let model = end.model();
+        let node = (0..model.reference.len() / 2).find(|n| model.reference[2 * n..2 * n + 2] == [80.0, 0.0]);
+        let found = end.state().y[2 * node.unwrap()] - 80.0;
+        assert!((found / exact - 1.0).abs() < 0.01, "{overlap}: {found} {exact}");
+    }
+}
+
+/// A block that reaches into a rigid plane by less than its single nodes may, or by more.
+#[test]
+fn mortar_contact_keeps_an_overlap_with_an_obstacle() {
+    for depth in [0.001, 0.01, 0.05] {
+        let block = format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "hencky", density = 1.0, young = 1000.0, poisson = 0.3 }}]
+body = [{{ name = "b", material = "m", element = "T6", mesh = {{ shape = "rectangle", min = [0.0, {:?}], max = [2.0, 1.0], cells = [4, 2] }} }}]
+support = [{{ on = ["b.top"], fix = ["x", "y"] }}]
+contact = [{{ name = "fit", secondary = "b.bottom", primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}, method = "mortar" }}]
+[time]
+end = 0.02
+step = 1e-3
+scheme = {{ kind = "chung-hulbert", rho_inf = 0.8 }}
+"#,
+            -depth
+        );
+        for overlap in ["keep-gap", "touch"] {
+            for enforcement in ["multiplier", "penalty", "augmented"] {
+                let sets = [
+                    format!("contact.fit.overlap={overlap}"),
+                    format!("contact.fit.enforcement={enforcement}"),
+                ];
+                let end = finish(simulation(&block, &sets));
+                let moved = end.state().y.iter().zip(&end.model().reference).map(|(y, x)| (y - x).abs());
+                let moved = moved.fold(0.0, f64::max);
+                assert!(moved < 1e-13, "{depth} {overlap} {enforcement}: {moved:e}");
+            }
+        }
+        // Relaxed, the block is as with rows for nodes: a plane of its own nodes.
+        let [mean, nodes] = ["mortar", "node-to-segment"].map(|method| {
+            let sets = ["contact.fit.overlap=relax".to_owned(), format!("contact.fit.method={method}")];
+            simulation(&block, &sets).state().ledger.strain
+        });
+        assert!((mean / nodes - 1.0).abs() < 1e-3, "{depth}: {mean} {nodes}");
+    }
+}
