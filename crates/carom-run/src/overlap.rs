@@ -349,7 +349,7 @@ impl Proximal {
     fn steps(&self, model: Model, before: InitialState, most: u32) -> Result<Reached, String> {
         let rest = before.v.clone();
         let grid = Grid { dt: self.step, steps: u64::from(most), phase: 0.0, guard: None, floor: 0.0 };
-        let stepper = stepper(self.tolerance)?;
+        let stepper = stepper(self.tolerance, &model)?;
         let mut simulation = Simulation::new(model, stepper, grid, true, Some(before), self.threads)
             .map_err(|rejected| rejected.to_string())?;
         loop {
@@ -370,14 +370,10 @@ impl Proximal {
     }
 }
 
-fn stepper(tolerance: f64) -> Result<Box<dyn Stepper>, String> {
-    let settings = Settings {
-        tolerance,
-        max_iterations: 60,
-        tangent: Tangent::Frozen,
-        linear: Linear::Direct,
-        mixing: 0,
-    };
+fn stepper(tolerance: f64, model: &Model) -> Result<Box<dyn Stepper>, String> {
+    // As in load steps: a tangent from before metal yields is a thousand times stiffer.
+    let tangent = if model.remembers() { Tangent::Full } else { Tangent::Frozen };
+    let settings = Settings { tolerance, max_iterations: 60, tangent, linear: Linear::Direct, mixing: 0 };
     let kernel = scheme().kernel().ok_or("backward Euler has no stages")?;
     Ok(Box::new(Implicit::new(kernel, settings)))
 }

@@ -136,6 +136,53 @@ fn a_fit_that_a_rotation_releases_is_refused() {
     }
 }
 
+/// A hub on a held shaft, 0.05 too wide for it, that yields and may turn.
+const YIELDING: &str = r#"
+dimension = 2
+plane = "strain"
+material = [{ name = "steel", law = "hencky", density = 7.8e-9, young = 200e3, poisson = 0.3, plastic = { yield = 120.0, hardening = 2000.0 } }]
+[[body]]
+name = "shaft"
+material = "steel"
+element = "T6"
+mesh = { shape = "ring", inner = 20.0, outer = 50.05, center = [0.0, 0.0], size = 9.0 }
+[[body]]
+name = "hub"
+material = "steel"
+element = "T6"
+mesh = { shape = "ring", inner = 50.0, outer = 80.0, center = [0.0, 0.0], size = 7.0 }
+[[support]]
+on = ["shaft.inner"]
+fix = ["x", "y"]
+[[contact]]
+name = "fit"
+secondary = "hub.inner"
+primary = "shaft.outer"
+overlap = "relax"
+[time]
+end = 1e-5
+step = 1e-6
+scheme = { kind = "chung-hulbert", rho_inf = 0.8 }
+"#;
+
+/// The pressure is between that at which a thick ring begins to yield and that at which all of it
+/// has yielded: 2/√3 times the yield stress times (1 − a²/b²)/2, and times ln b/a.
+#[test]
+fn a_fit_that_yields_is_relaxed() {
+    let shear = 120.0 / 3.0_f64.sqrt();
+    let first = shear * (1.0 - (50.0_f64 / 80.0).powi(2));
+    let whole = 2.0 * shear * (80.0_f64 / 50.0).ln();
+    for tolerance in ["1e-9", "3e-9"] {
+        for size in ["7.0", "6.0", "5.0"] {
+            let sets = [format!("newton.tolerance={tolerance}"), format!("body.hub.mesh.size={size}")];
+            let start = simulation(YIELDING, &sets);
+            let force: f64 = start.state().pairs[0].iter().map(|pair| pair.lambda).sum();
+            let pressure = -force / (100.0 * std::f64::consts::PI);
+            assert!(pressure > first && pressure < 1.02 * whole, "{tolerance} {size}: {pressure}");
+        }
+    }
+}
+
 /// A disc that is given twice: no node of either side is inside the other one, which is its twin.
 #[test]
 fn bodies_at_one_place() {
