@@ -11,19 +11,18 @@ use carom_run::recording::{self, Progress, RunError};
 use crate::error::StudyError;
 use crate::jobs::Ended;
 
-/// Computes run number `i` to its end; `begun`: resumes it.
+/// Computes run number `i` to its end; one that has begun is resumed.
 pub(crate) fn compute(
     manifest: &StudyManifest,
     directory: &Path,
     i: usize,
-    begun: bool,
     threads: ThreadCount,
     observe: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);
     let path = directory.join(&arm.directory);
-    let done = if begun {
+    let done = if path.join("manifest.json").is_file() {
         recording::resume(&path, threads, observe, stop)
     } else {
         let case = case_of(arm)?;

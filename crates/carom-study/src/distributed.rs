@@ -71,12 +71,12 @@ pub fn arm(
         return Ok(ended);
     }
     settled(&manifest, directory)?;
-    match compute(&manifest, directory, i, record.is_some(), 1.into(), observe, stop) {
+    match compute(&manifest, directory, i, 1.into(), observe, stop) {
         // Another process created it since.
         Err(StudyError::Arm { source: RunError::Record(RecordError::Exists { path }), .. }) => {
             match ended(&Manifest::read(&path).map_err(damaged)?) {
                 Some(ended) => Ok(ended),
-                None => compute(&manifest, directory, i, true, 1.into(), observe, stop),
+                None => compute(&manifest, directory, i, 1.into(), observe, stop),
             }
         }
         other => other,
@@ -85,7 +85,7 @@ pub fn arm(
 
 /// Checks that all steps of matched cost have been found.
 fn settled(manifest: &StudyManifest, directory: &Path) -> Result<(), StudyError> {
-    let begun = |arm: &&Arm| matches!(manifest.state(directory, arm), Ok((Some(_), _)));
+    let begun = |arm: &&Arm| matches!(manifest.status_of(directory, arm), Ok(Some(_)));
     match manifest.arms.iter().filter(|arm| manifest.by_cost(arm)).find(|arm| !begun(arm)) {
         Some(arm) => Err(StudyError::Unsettled { arm: arm.name.clone() }),
         None => Ok(()),

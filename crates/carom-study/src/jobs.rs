@@ -8,6 +8,8 @@ use carom_record::Status;
 use carom_run::ThreadCount;
 use carom_run::recording::{self, End, Progress};
 
+use crate::error::StudyError;
+
 /// An event of an arm, given by its number.
 #[derive(Clone, Debug)]
 pub enum Event {
@@ -51,13 +53,13 @@ pub(crate) fn threads(jobs: usize) -> ThreadCount {
 
 /// Computes numbered runs, as many concurrently as there are jobs, started in the given order;
 /// stops at the first error.
-pub(crate) fn side_by_side<E: Send>(
+pub(crate) fn side_by_side(
     order: VecDeque<usize>,
     jobs: usize,
-    one: &(dyn Fn(usize, &mut (dyn FnMut(&Progress) + Send)) -> Result<Ended, E> + Sync),
+    one: &(dyn Fn(usize, &mut (dyn FnMut(&Progress) + Send)) -> Result<Ended, StudyError> + Sync),
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
-) -> Result<(), E> {
+) -> Result<(), StudyError> {
     let queue = Mutex::new(order);
     let failure = Mutex::new(None);
     let halted = AtomicBool::new(false);

@@ -134,27 +134,18 @@ pub(crate) fn settle(
         return Ok(true);
     }
     let anchors = arms_with(&|arm| !arm.role.fine && arm.role.method.as_ref() == Some(&design.cost_of));
-    let not_ended = |i: &usize| {
-        let status = manifest.state(directory, &manifest.arms[*i]).map(|s| s.0);
-        !matches!(status, Ok(Some(Status::Finished | Status::Failed)))
-    };
+    let not_ended = |i: &usize| !manifest.has_ended(directory, &manifest.arms[*i]);
     let waiting = anchors.iter().copied().filter(not_ended).collect();
     let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
-        let begun = directory.join(&manifest.arms[i].directory).join("manifest.json").is_file();
-        compute(manifest, directory, i, begun, threads(jobs), progress, stop)
+        compute(manifest, directory, i, threads(jobs), progress, stop)
     };
-    side_by_side::<StudyError>(waiting, jobs, &one, observe, stop)?;
+    side_by_side(waiting, jobs, &one, observe, stop)?;
     if anchors.iter().any(not_ended) {
         return Ok(false);
     }
     let budget = |level: usize| -> Result<Option<f64>, RecordError> {
-        let Some(arm) = anchors.iter().map(|i| &manifest.arms[*i]).find(|a| a.role.level == level) else {
-            return Ok(None);
-        };
-        let run = Manifest::read(&directory.join(&arm.directory))?;
-        Ok(Some(&run)
-            .filter(|run| run.status == Status::Finished)
-            .and_then(|run| cost(&run.counters, run.facts.stepping)))
+        let arm = anchors.iter().map(|i| &manifest.arms[*i]).find(|arm| arm.role.level == level);
+        arm.map_or(Ok(None), |arm| cost_of(&directory.join(&arm.directory)))
     };
     let levels = design.steps.len().max(1);
     let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
@@ -167,7 +158,7 @@ pub(crate) fn settle(
         }
         Ok(ended)
     };
-    side_by_side::<StudyError>(others.iter().copied().collect(), jobs, &one, observe, stop)?;
+    side_by_side(others.iter().copied().collect(), jobs, &one, observe, stop)?;
     let settled = settled.into_inner().unwrap_or_else(PoisonError::into_inner);
     let all_settled = settled.len() == others.len();
     for (i, steps, share) in settled {
@@ -178,27 +169,27 @@ pub(crate) fn settle(
     Ok(all_settled)
 }
 
-/// Gives an arm and its members the step of that many steps of the arm. A member with a phase has
-/// one step more.
-fn adopt(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
-    let step = case_with(manifest, i, steps)?.time.step;
-    manifest.runs_of(i).into_iter().try_for_each(|run| place(manifest, run, step))
+/// The counted cost of a run; none if it did not reach its end.
+fn cost_of(path: &Path) -> Result<Option<f64>, RecordError> {
+    let run = Manifest::read(path)?;
+    Ok(cost(&run.counters, run.facts.stepping).filter(|_| run.status == Status::Finished))
 }
 
-/// Sets the step of a run, in its case and in its changes.
-fn place(manifest: &mut StudyManifest, i: usize, step: f64) -> Result<(), StudyError> {
-    let mut case = case_of(manifest.run(i))?;
-    case.time.step = step;
-    let first_member = manifest.arms.len();
-    let arm = match i.checked_sub(first_member) {
-        None => &mut manifest.arms[i],
-        Some(member) => &mut manifest.members[member],
-    };
-    arm.sets.retain(|set| !sets_step(set));
-    arm.sets.push(format!("time.step={step:?}"));
-    arm.steps = case.time.steps() as u64;
-    arm.facts = case.facts();
-    arm.case = case.to_json().unwrap_or_default();
+/// Gives an arm and its members the step of that many steps of the arm, in their cases and in their
+/// changes. A member with a phase has one step more.
+fn adopt(manifest: &mut StudyManifest, i: usize, steps: u64) -> Result<(), StudyError> {
+    let step = case_with(manifest, i, steps)?.time.step;
+    let adopting = manifest.runs_of(i);
+    let runs = manifest.arms.iter_mut().chain(&mut manifest.members).enumerate();
+    for (_, run) in runs.filter(|(run, _)| adopting.contains(run)) {
+        let mut case = case_of(run)?;
+        case.time.step = step;
+        run.sets.retain(|set| !sets_step(set));
+        run.sets.push(format!("time.step={step:?}"));
+        run.steps = case.time.steps() as u64;
+        run.facts = case.facts();
+        run.case = case.to_json().unwrap_or_default();
+    }
     Ok(())
 }
 
@@ -228,6 +219,7 @@ fn pilot(
     fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
     let mut pilot = Pilot::read(&folder)?;
     pilot.budget = pilot.budget.or(budget);
+    let mut computed = |steps: u64, path: &Path| run_of(manifest, i, steps, path, progress, stop);
     while pilot.settled.is_none() {
         let Some(steps) = pilot.next(arm.steps) else {
             pilot.settled = Some(pilot.closest());
@@ -235,17 +227,13 @@ fn pilot(
             break;
         };
         let path = folder.join((pilot.trials.len() + 1).to_string());
-        let ended = trial(manifest, i, steps, &path, progress, stop)?;
-        let Some(ended) = ended else {
-            pilot.trials.push(Trial { steps, cost: None });
-            pilot.write(&folder)?;
-            continue;
+        let cost = match computed(steps, &path) {
+            Ok(ended) if ended.status == Status::Stopped => return Ok((ended, steps, None)),
+            Ok(_) => cost_of(&path)?,
+            // The step is not possible, for example above the stable step of an explicit scheme.
+            Err(StudyError::Arm { source: RunError::Case(_), .. }) => None,
+            Err(error) => return Err(error),
         };
-        if ended.status == Status::Stopped {
-            return Ok((ended, steps, None));
-        }
-        let run = Manifest::read(&path)?;
-        let cost = cost(&run.counters, run.facts.stepping).filter(|_| ended.status == Status::Finished);
         pilot.trials.push(Trial { steps, cost });
         pilot.write(&folder)?;
     }
@@ -256,8 +244,7 @@ fn pilot(
     if !to.exists() {
         // The record of an accepted trial may have been removed together with that of its arm.
         if !from.is_dir() {
-            let ended = run_of(manifest, i, accepted.steps, &from, progress, stop);
-            let ended = ended?.map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })?;
+            let ended = computed(accepted.steps, &from)?;
             if ended.status == Status::Stopped {
                 return Ok((ended, accepted.steps, None));
             }
@@ -276,23 +263,6 @@ fn pilot(
     Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
 }
 
-/// One pilot run of `steps` steps; none if the time step is not possible, for example above the
-/// stable step of an explicit scheme.
-fn trial(
-    manifest: &StudyManifest,
-    i: usize,
-    steps: u64,
-    path: &Path,
-    progress: &mut (dyn FnMut(&Progress) + Send),
-    stop: &AtomicBool,
-) -> Result<Option<Ended>, StudyError> {
-    match run_of(manifest, i, steps, path, progress, stop)? {
-        Ok(ended) => Ok(Some(ended)),
-        Err(RunError::Case(_)) => Ok(None),
-        Err(source) => Err(StudyError::Arm { arm: manifest.arms[i].name.clone(), source }),
-    }
-}
-
 /// Starts or resumes a run of an arm with `steps` steps.
 fn run_of(
     manifest: &StudyManifest,
@@ -301,15 +271,18 @@ fn run_of(
     path: &Path,
     progress: &mut (dyn FnMut(&Progress) + Send),
     stop: &AtomicBool,
-) -> Result<Result<Ended, RunError>, StudyError> {
-    if path.join("manifest.json").is_file() {
-        return Ok(recording::resume(path, 1, progress, stop).map(Ended::of));
-    }
-    let case = case_with(manifest, i, steps)?;
-    let mut source = manifest.source_of(&manifest.arms[i]);
-    source.sets.retain(|set| !sets_step(set));
-    source.sets.push(format!("time.step={:?}", case.time.step));
-    Ok(recording::run(&case, source, path, 1, progress, stop).map(Ended::of))
+) -> Result<Ended, StudyError> {
+    let arm = &manifest.arms[i];
+    let done = if path.join("manifest.json").is_file() {
+        recording::resume(path, 1, progress, stop)
+    } else {
+        let case = case_with(manifest, i, steps)?;
+        let mut source = manifest.source_of(arm);
+        source.sets.retain(|set| !sets_step(set));
+        source.sets.push(format!("time.step={:?}", case.time.step));
+        recording::run(&case, source, path, 1, progress, stop)
+    };
+    done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 //! its own run directory. An arm that fails is a row of the tables; after Ctrl-C or a kill, every
 //! arm can be resumed.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -73,22 +72,19 @@ pub fn resume(
     let settled = matched::settle(&mut manifest, directory, jobs, observe, stop)?;
     let mut waiting = Vec::new();
     for (i, arm) in manifest.runs().enumerate() {
-        let state = manifest.state(directory, arm);
-        match state.map_err(|error| StudyError::of_record(arm, directory, error))?.0 {
+        let status = manifest.status_of(directory, arm);
+        match status.map_err(|error| StudyError::of_record(arm, directory, error))? {
             Some(Status::Finished | Status::Failed) => observe(&Event::AlreadyDone(i)),
+            // A case that cannot be read is an error when its turn comes.
+            _ if settled => waiting.push((i, case_of(arm).map_or(0.0, |case| case.work()))),
             // If the steps of matched cost are not settled, no other arm is run.
-            _ if !settled => {}
-            state => waiting.push((i, state.is_some())),
+            _ => {}
         }
     }
-    let begun: BTreeMap<usize, bool> = waiting.into_iter().collect();
-    // A case that cannot be read is an error when its turn comes.
-    let work = |i: usize| case_of(manifest.run(i)).map_or(0.0, |case| case.work());
-    let mut order: Vec<(usize, f64)> = begun.keys().map(|&i| (i, work(i))).collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let order = order.into_iter().map(|(i, _)| i).collect();
+    waiting.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let order = waiting.into_iter().map(|(i, _)| i).collect();
     let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
-        compute(&manifest, directory, i, begun.get(&i) == Some(&true), threads(jobs), progress, stop)
+        compute(&manifest, directory, i, threads(jobs), progress, stop)
     };
     side_by_side(order, jobs, &one, observe, stop)?;
     conclude(manifest, directory, stop)
@@ -100,10 +96,11 @@ pub(crate) fn conclude(
     directory: &Path,
     stop: &AtomicBool,
 ) -> Result<Outcome, StudyError> {
-    let ended =
-        |arm| matches!(manifest.state(directory, arm), Ok((Some(Status::Finished | Status::Failed), _)));
     // Which arm is checked must not depend on which of them have ended first.
-    if manifest.goal.is_some() && !stop.load(Ordering::Relaxed) && manifest.runs().all(ended) {
+    if manifest.goal.is_some()
+        && !stop.load(Ordering::Relaxed)
+        && manifest.runs().all(|arm| manifest.has_ended(directory, arm))
+    {
         checks::make(&manifest, directory, stop);
     }
     let study = Study::open(directory, &mut |_, _| ())?;

@@ -153,20 +153,21 @@ impl StudyManifest {
         }
     }
 
-    /// Status of an arm, none if it has not started; and the reason if it did not finish.
+    /// Status of an arm; none if it has not started.
     ///
     /// # Errors
     /// Input/output or system error, or a damaged manifest.
-    pub fn state(
-        &self,
-        directory: &Path,
-        arm: &Arm,
-    ) -> Result<(Option<Status>, Option<String>), RecordError> {
+    pub fn status_of(&self, directory: &Path, arm: &Arm) -> Result<Option<Status>, RecordError> {
         let path = directory.join(&arm.directory);
         if !path.join("manifest.json").is_file() {
-            return Ok((None, None));
+            return Ok(None);
         }
-        Manifest::read(&path).map(|m| (Some(m.status), m.reason))
+        Manifest::read(&path).map(|run| Some(run.status))
+    }
+
+    /// Whether an arm has finished or failed.
+    pub fn has_ended(&self, directory: &Path, arm: &Arm) -> bool {
+        matches!(self.status_of(directory, arm), Ok(Some(Status::Finished | Status::Failed)))
     }
 
     /// The record of an arm, none if it has not started; forces and impulses of contact have the
