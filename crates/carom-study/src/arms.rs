@@ -2,7 +2,7 @@
 //! are reported at its place in the study file.
 
 use carom_record::available_memory;
-use carom_record::study::design::{Kind, Role};
+use carom_record::study::design::{Kind, MemberOf, Role};
 use carom_record::study::ensemble::{Ensemble, Member};
 use carom_record::study::sets_step;
 use carom_run::case::{Case, Diagnostic, Document, Problem, gibibytes};
@@ -11,7 +11,7 @@ use toml_edit::Value;
 use crate::file::{FINE_NAME, StudyFile, assignment, one_line};
 
 /// The changes of an arm, with their places in the study file.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct Draft {
     pub(crate) name: String,
     /// Path of the arm in the study file.
@@ -20,11 +20,17 @@ pub(crate) struct Draft {
     pub(crate) sets: Vec<(String, String)>,
     /// Case file that the arm names; none if it uses that of the study.
     pub(crate) case: Option<String>,
-    /// Override `expect=…` that replaces the expectations of the case, and its path in the study
-    /// file.
-    pub(crate) expect: (String, String),
+    /// Expectations, as TOML, that replace those of the case; none if it has none of its own.
+    pub(crate) expect: Option<String>,
     /// Role of the arm in the study.
     pub(crate) role: Role,
+}
+
+impl Draft {
+    /// The override that replaces the expectations of the case.
+    pub(crate) fn expectations(&self) -> String {
+        format!("expect={}", self.expect.as_deref().unwrap_or("[]"))
+    }
 }
 
 /// Bytes of an arm while the study is planned, without the texts of its files: its case, resolved
@@ -64,41 +70,42 @@ fn methods(file: &StudyFile) -> Vec<Draft> {
     for (i, arm) in file.arms.iter().enumerate() {
         let path = format!("arm[{i}]");
         let own = arm.set.iter().map(|entry| entry_at(entry, &path));
-        let expect = format!("expect={}", arm.expect.as_deref().unwrap_or("[]"));
         drafts.push(Draft {
             name: arm.name.clone(),
             sets: with_common(file, own.collect()),
             case: arm.case.clone(),
-            expect: (expect, format!("{path}.expect")),
+            expect: arm.expect.clone(),
             path,
             role: Role { by_cost: arm.by_cost, ..Role::default() },
         });
     }
-    let combinations: usize =
-        if file.grid.is_empty() { 0 } else { file.grid.iter().map(|(_, v)| v.len()).product() };
-    for combination in 0..combinations {
-        let mut remainder = combination;
-        let mut sets = Vec::new();
-        let mut name = Vec::new();
-        for (key, values) in file.grid.iter().rev() {
-            let i = remainder % values.len();
-            remainder /= values.len();
-            sets.push((assignment(key, &values[i]), format!("grid.\"{key}\"[{i}]")));
-            name.push(format!("{key}={}", brief(&values[i])));
-        }
-        sets.reverse();
-        let sets = with_common(file, sets);
-        name.reverse();
+    for combination in combinations(&file.grid) {
+        let of = |&(key, i, value): &Chosen| (assignment(key, value), format!("grid.\"{key}\"[{i}]"));
+        let name = |(key, _, value): &Chosen| format!("{key}={}", brief(value));
         drafts.push(Draft {
-            name: name.join(", "),
+            name: combination.iter().map(name).collect::<Vec<_>>().join(", "),
             path: "grid".into(),
-            sets,
-            case: None,
-            expect: ("expect=[]".into(), "grid".into()),
-            role: Role::default(),
+            sets: with_common(file, combination.iter().map(of).collect()),
+            ..Draft::default()
         });
     }
     drafts
+}
+
+/// A key of the grid with one of its values, and the number of that value.
+type Chosen<'a> = (&'a str, usize, &'a Value);
+
+/// All combinations of a grid, the last key of which varies fastest; none of an empty grid.
+fn combinations(grid: &[(String, Vec<Value>)]) -> Vec<Vec<Chosen<'_>>> {
+    let mut found = if grid.is_empty() { Vec::new() } else { vec![Vec::new()] };
+    for (key, values) in grid {
+        let before = std::mem::take(&mut found);
+        for chosen in before {
+            let next = |(i, value)| [&chosen[..], &[(key.as_str(), i, value)]].concat();
+            found.extend(values.iter().enumerate().map(next));
+        }
+    }
+    found
 }
 
 /// Every method of a design at each level, or at its own step if no steps are given. For a method
@@ -200,8 +207,7 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) ->
             sets.push((format!("refine={:?}", case.refine * level.mesh), "fine.mesh".to_owned()));
         }
         let role = Role { fine: true, check, ..Role::default() };
-        let expect = ("expect=[]".to_owned(), "fine".to_owned());
-        Draft { name, path: "reference".into(), sets, case: None, expect, role }
+        Draft { name, path: "reference".into(), sets, role, ..Draft::default() }
     };
     let run = |level: &Level| {
         let times = (finest.steps / level.steps * 1e4).round() / 1e4;
@@ -216,10 +222,10 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) ->
     Some(levels.iter().map(run).chain(checks).collect())
 }
 
-/// The members of an arm's ensemble, except for itself, with the changes that make them from the
+/// The members of the ensemble of arm number `arm`, except for itself, with the changes that make them from the
 /// arm's case. Sides cannot be swapped against a rigid primary: a case that has no others has no
 /// swapped members. The meshes of the reference are its own, and so is what an arm itself sets.
-pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(Member, Draft)> {
+pub(crate) fn members(ensemble: &Ensemble, arm: usize, draft: &Draft, case: &Case) -> Vec<Draft> {
     let swaps: Vec<String> = case
         .contacts
         .iter()
@@ -257,10 +263,8 @@ pub(crate) fn members(ensemble: &Ensemble, draft: &Draft, case: &Case) -> Vec<(M
         let sets = sets.into_iter().map(|set| (set, "ensemble".to_owned()));
         let sets = draft.sets.iter().cloned().chain(sets).collect();
         let name = format!("{} ({})", draft.name, ensemble.name(&member));
-        (
-            member,
-            Draft { name, sets, expect: ("expect=[]".to_owned(), "ensemble".to_owned()), ..draft.clone() },
-        )
+        let role = Role { member: Some(MemberOf { arm, member }), ..draft.role.clone() };
+        Draft { name, sets, expect: None, role, ..draft.clone() }
     };
     let members = if draft.role.check { Vec::new() } else { ensemble.members() };
     members.into_iter().skip(1).filter(possible).map(member).collect()
@@ -327,11 +331,9 @@ pub(crate) fn placed(study: &Document, draft: &Draft, found: &Diagnostic, base: 
     if base.contains(found) {
         return found.clone();
     }
-    let set = draft
-        .sets
-        .iter()
-        .chain([&draft.expect])
-        .find(|(set, _)| found.file == "--set" && found.quoted == *set);
+    let expect = (draft.expectations(), format!("{}.expect", draft.path));
+    let mut sets = draft.sets.iter().chain([&expect]);
+    let set = sets.find(|(set, _)| found.file == "--set" && found.quoted == *set);
     let path = set.map_or(&draft.path, |(_, path)| path);
     let place = match found.line {
         line if line > 0 && found.file != "--set" => format!(" ({}:{line}:{})", found.file, found.column),

@@ -1,24 +1,53 @@
 //! Checks that what the expectations and measured data of a study refer to exists in the records of
 //! its arms: names of arms, columns and metrics.
 
+use carom_record::Reason;
 use carom_record::metrics::Overlay;
-use carom_record::question::{Asked, Quantity, Question, Series, column_metric_names, metric_names};
-use carom_record::study::{Claim, Comparison};
-use carom_record::{Expect, Expression, OrderOf, Reason};
+use carom_record::question::{Quantity, Question, Series, column_metric_names, metric_names};
+use carom_record::study::{Comparison, Refined};
 use carom_run::case::{Case, Problem, history_columns};
 
-/// Arms and measured data whose names the expectations of a study can contain.
+use crate::file::StudyFile;
+
+/// Arms and measured data whose names a study can contain.
 struct Known<'a> {
     arms: &'a [(&'a str, &'a Case)],
     overlays: &'a [Overlay],
 }
 
-/// Adds the problems of a study's measured data: a name that is used twice, a column that no arm
-/// has.
-pub(crate) fn overlays(overlays: &[Overlay], arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
-    for (i, Overlay { name, column, .. }) in overlays.iter().enumerate() {
-        let twice = overlays[..i].iter().any(|other| other.name == *name);
-        let of_case = arms.iter().any(|(_, case)| case.overlays.iter().any(|other| other.name == *name));
+/// Adds the problems of a study's measured data, expectations and claims.
+pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
+    let known = Known { arms, overlays: &file.overlays };
+    overlays(&known, problems);
+    for (i, expect) in file.expects.iter().enumerate() {
+        let asked = match (&expect.order, &expect.deviation) {
+            (Some(order), _) => order.quantity(),
+            (None, Some(_)) => Series::parse(&expect.what).map(Refined::Column),
+            (None, None) => Question::parse(&expect.what).map(Refined::Number),
+        };
+        if let Err(what) = asked.and_then(|asked| known.answers(&asked)) {
+            let key = if expect.order.is_some() { "of" } else { "what" };
+            let why = "expectations of a study use the records of its arms";
+            let help = "write for example 'last A.uy of \"ARM\"'";
+            problems.push(Problem::new(format!("expect[{i}].{key}"), what, why, help));
+        }
+    }
+    for (i, claim) in file.claims.iter().enumerate() {
+        let Ok(comparison) = Comparison::parse(&claim.compare) else { continue };
+        if let Some(what) = comparison.questions().iter().find_map(|asked| known.question(asked).err()) {
+            let why = "claims compare numbers of the records of the arms";
+            let help = "`carom explain` lists the metrics; a column is asked for as 'last A.uy of \"ARM\"'";
+            problems.push(Problem::new(format!("claim[{i}].compare"), what, why, help));
+        }
+    }
+}
+
+/// Adds the problems of measured data: a name that is used twice, a column that no arm has.
+fn overlays(known: &Known, problems: &mut Vec<Problem>) {
+    for (i, Overlay { name, column, .. }) in known.overlays.iter().enumerate() {
+        let twice = known.overlays[..i].iter().any(|other| other.name == *name);
+        let of_case =
+            known.arms.iter().any(|(_, case)| case.overlays.iter().any(|other| other.name == *name));
         if twice || of_case {
             let why = if twice {
                 "figures and metrics identify measured data by name"
@@ -28,149 +57,101 @@ pub(crate) fn overlays(overlays: &[Overlay], arms: &[(&str, &Case)], problems: &
             let what = format!("two [[overlay]] are named \"{name}\"");
             problems.push(Problem::new(format!("overlay[{i}].name"), what, why, "rename one of them"));
         }
-        let columns: Vec<String> = arms.iter().flat_map(|(_, case)| names(case)).collect();
+        let columns: Vec<String> = known.arms.iter().flat_map(|(_, case)| columns(case)).collect();
         if !columns.contains(column) {
             let what = format!("the records of the arms will have no column `{column}`");
             let why = "measured data are compared with a column of history.csv";
-            let near = columns.iter().min_by_key(|c| strsim::damerau_levenshtein(c, column));
-            let help = near.map_or_else(String::new, |near| format!("did you mean `{near}`?"));
-            problems.push(Problem::new(format!("overlay[{i}].column"), what, why, help));
+            problems.push(Problem::new(format!("overlay[{i}].column"), what, why, meant(column, &columns)));
         }
     }
-}
-
-/// Adds the problems of a study's expectations.
-pub(crate) fn check(
-    expects: &[Expect],
-    overlays: &[Overlay],
-    arms: &[(&str, &Case)],
-    problems: &mut Vec<Problem>,
-) {
-    let known = &Known { arms, overlays };
-    for (i, expect) in expects.iter().enumerate() {
-        let path = format!("expect[{i}].what");
-        let wrong = match (&expect.order, &expect.deviation) {
-            (Some(order), _) => order_of(order, known).map_err(|what| (format!("expect[{i}].of"), what)),
-            (None, Some(_)) => {
-                Series::parse(&expect.what).and_then(|s| series(&s, arms)).map_err(|what| (path, what))
-            }
-            (None, None) => {
-                Question::parse(&expect.what).and_then(|q| question(&q, known)).map_err(|what| (path, what))
-            }
-        };
-        if let Err((path, what)) = wrong {
-            let why = "expectations of a study use the records of its arms";
-            problems.push(Problem::new(path, what, why, "write for example 'last A.uy of \"ARM\"'"));
-        }
-    }
-}
-
-/// Adds the problems of a study's claims: metrics and columns that no record has.
-pub(crate) fn claims(
-    claims: &[Claim],
-    overlays: &[Overlay],
-    arms: &[(&str, &Case)],
-    problems: &mut Vec<Problem>,
-) {
-    let known = &Known { arms, overlays };
-    for (i, claim) in claims.iter().enumerate() {
-        let Ok(comparison) = Comparison::parse(&claim.compare) else { continue };
-        if let Some(what) = comparison.questions().iter().find_map(|asked| question(asked, known).err()) {
-            let why = "claims compare numbers of the records of the arms";
-            let help = "`carom explain` lists the metrics; a column is asked for as 'last A.uy of \"ARM\"'";
-            problems.push(Problem::new(format!("claim[{i}].compare"), what, why, help));
-        }
-    }
-}
-
-fn question(question: &Question, known: &Known) -> Result<(), Reason> {
-    question.quantities().into_iter().try_for_each(|quantity| match quantity {
-        Quantity::Reduced(_, columns) => series(columns, known.arms),
-        Quantity::Metric(name, arm) => metric(name, arm.as_deref(), known),
-    })
-}
-
-fn series(series: &Series, arms: &[(&str, &Case)]) -> Result<(), Reason> {
-    series.columns.quantities().into_iter().try_for_each(|asked| column(asked, arms))
-}
-
-fn metric(name: &str, arm: Option<&str>, known: &Known) -> Result<(), Reason> {
-    let arms = known.arms;
-    match name.rsplit_once(':') {
-        Some(("energy_lost", _)) => arms_of(arm, arms).map(drop),
-        Some(("overlay_rms" | "overlay_peak" | "overlay_shift", of)) => measured(of, arm, known),
-        Some((of, what)) if column_metric_names().contains(&what) => {
-            column(&Asked { column: of.to_owned(), arm: arm.map(str::to_owned) }, arms)
-        }
-        _ if metric_names().contains(&name) => arms_of(arm, arms).map(drop),
-        _ => {
-            let names = metric_names();
-            let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(known, name));
-            let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
-            Err(format!("there is no metric `{name}`: {near}the metrics are: {}", names.join(", ")).into())
-        }
-    }
-}
-
-/// Whether there are measured data of this name, in the study or in the cases of the arms.
-fn measured(name: &str, arm: Option<&str>, known: &Known) -> Result<(), Reason> {
-    let of_study: Vec<&str> = known.overlays.iter().map(|overlay| overlay.name.as_str()).collect();
-    for (arm, case) in arms_of(arm, known.arms)? {
-        let mut names = of_study.clone();
-        names.extend(case.overlays.iter().map(|overlay| overlay.name.as_str()));
-        if !names.contains(&name) {
-            let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            return Err(format!(
-                "arm \"{arm}\" has no measured data `{name}`; the tables [[overlay]] are: {known}"
-            )
-            .into());
-        }
-    }
-    Ok(())
 }
 
 /// Names of the columns of a case.
-fn names(case: &Case) -> impl Iterator<Item = String> + use<> {
-    history_columns(case).into_iter().map(|column| column.name)
+fn columns(case: &Case) -> Vec<String> {
+    history_columns(case).into_iter().map(|column| column.name).collect()
 }
 
-fn column(asked: &Asked, arms: &[(&str, &Case)]) -> Result<(), Reason> {
-    for (name, case) in arms_of(asked.arm.as_deref(), arms)? {
-        let columns: Vec<String> = names(case).collect();
-        if !columns.contains(&asked.column) {
-            let near = columns.iter().min_by_key(|c| strsim::damerau_levenshtein(c, &asked.column));
-            let near = near.map_or_else(String::new, |near| format!(": did you mean `{near}`?"));
-            return Err(
-                format!("the record of arm \"{name}\" will have no column `{}`{near}", asked.column).into()
-            );
+/// Asks whether the most similar name was meant.
+fn meant(given: &str, names: &[impl AsRef<str>]) -> String {
+    let names = names.iter().map(AsRef::as_ref);
+    let near = names.min_by_key(|name| strsim::damerau_levenshtein(name, given));
+    near.map_or_else(String::new, |near| format!("did you mean `{near}`?"))
+}
+
+impl Known<'_> {
+    /// Whether the records will have what a quantity is computed from.
+    fn answers(&self, asked: &Refined) -> Result<(), Reason> {
+        match asked {
+            Refined::Number(question) => self.question(question),
+            Refined::Column(series) => self.series(series),
         }
     }
-    Ok(())
-}
 
-/// The arms of a quantity: the one it names, or all.
-fn arms_of<'a>(
-    arm: Option<&str>,
-    arms: &'a [(&'a str, &'a Case)],
-) -> Result<Vec<&'a (&'a str, &'a Case)>, Reason> {
-    let Some(name) = arm else { return Ok(arms.iter().collect()) };
-    let found: Vec<_> = arms.iter().filter(|(other, _)| *other == name).collect();
-    if found.is_empty() {
-        let known: Vec<_> = arms.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-        return Err(format!("no arm is named \"{name}\"; the arms are: {}", known.join(", ")).into());
+    fn question(&self, question: &Question) -> Result<(), Reason> {
+        question.quantities().into_iter().try_for_each(|quantity| match quantity {
+            Quantity::Reduced(_, columns) => self.series(columns),
+            Quantity::Metric(name, arm) => self.metric(name, arm.as_deref()),
+        })
     }
-    Ok(found)
-}
 
-fn order_of(order: &OrderOf, known: &Known) -> Result<(), Reason> {
-    match Question::parse(&order.of) {
-        // A single word that is not a metric is a column.
-        Ok(Expression::Quantity(Quantity::Metric(name, None)))
-            if !name.contains(':') && !metric_names().contains(&name.as_str()) =>
-        {
-            column(&Asked { column: name, arm: None }, known.arms)
+    fn series(&self, series: &Series) -> Result<(), Reason> {
+        let mut asked = series.columns.quantities().into_iter();
+        asked.try_for_each(|asked| self.column(&asked.column, asked.arm.as_deref()))
+    }
+
+    fn metric(&self, name: &str, arm: Option<&str>) -> Result<(), Reason> {
+        match name.rsplit_once(':') {
+            Some(("energy_lost", _)) => self.arms_of(arm).map(drop),
+            Some(("overlay_rms" | "overlay_peak" | "overlay_shift", of)) => self.measured(of, arm),
+            Some((of, what)) if column_metric_names().contains(&what) => self.column(of, arm),
+            _ if metric_names().contains(&name) => self.arms_of(arm).map(drop),
+            _ => {
+                let names = metric_names();
+                let meant = meant(name, &names);
+                let all = names.join(", ");
+                Err(format!("there is no metric `{name}`: {meant} the metrics are: {all}").into())
+            }
         }
-        Ok(parsed) => question(&parsed, known),
-        Err(_) => series(&Series::parse(&order.of)?, known.arms),
+    }
+
+    /// Whether there are measured data of this name, in the study or in the cases of the arms.
+    fn measured(&self, name: &str, arm: Option<&str>) -> Result<(), Reason> {
+        for (arm, case) in self.arms_of(arm)? {
+            let overlays = self.overlays.iter().map(|overlay| overlay.name.as_str());
+            let names: Vec<&str> = overlays.chain(case.overlays.iter().map(|o| o.name.as_str())).collect();
+            if !names.contains(&name) {
+                let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+                return Err(format!(
+                    "arm \"{arm}\" has no measured data `{name}`; the tables [[overlay]] are: {known}"
+                )
+                .into());
+            }
+        }
+        Ok(())
+    }
+
+    fn column(&self, column: &str, arm: Option<&str>) -> Result<(), Reason> {
+        for (name, case) in self.arms_of(arm)? {
+            let columns = columns(case);
+            if !columns.iter().any(|own| own == column) {
+                let meant = meant(column, &columns);
+                return Err(
+                    format!("the record of arm \"{name}\" will have no column `{column}`: {meant}").into()
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// The arms of a quantity: the one it names, or all.
+    fn arms_of(&self, arm: Option<&str>) -> Result<Vec<&(&str, &Case)>, Reason> {
+        let found: Vec<_> = self.arms.iter().filter(|(name, _)| arm.is_none_or(|arm| arm == *name)).collect();
+        match arm {
+            Some(arm) if found.is_empty() => {
+                let known: Vec<_> = self.arms.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+                Err(format!("no arm is named \"{arm}\"; the arms are: {}", known.join(", ")).into())
+            }
+            _ => Ok(found),
+        }
     }
 }

@@ -8,7 +8,6 @@ use carom_case::keys::{Keys, POSITIVE, Range, View, Words};
 use carom_case::{Asked, Document, EXPECT, OVERLAY, OverlaySpec, Problem, expects, overlays, read_table};
 use carom_record::Expect;
 use carom_record::metrics::Overlay;
-use carom_record::study::Claim;
 use carom_record::study::design::{Goal, Kind};
 use carom_record::study::ensemble::Ensemble;
 use toml_edit::Value;
@@ -73,8 +72,8 @@ pub(crate) struct StudyFile {
     #[key(Tables(&OVERLAY), name = "overlay", optional = "", with = measured)]
     pub(crate) overlays: Vec<Overlay>,
     /// A claim about the arms, confirmed or refuted by a comparison.
-    #[key(Tables(&ClaimKeys::TABLE), name = "claim", optional = "", with = claims)]
-    pub(crate) claims: Vec<Claim>,
+    #[key(name = "claim", optional = "")]
+    pub(crate) claims: Vec<ClaimKeys>,
     /// Expectations of the study as a whole.
     #[key(Tables(&EXPECT), name = "expect", optional = "", with = of_arms)]
     pub(crate) expects: Vec<Expect>,
@@ -146,13 +145,13 @@ pub(crate) struct ArmEntry {
 /// A claim about the arms, confirmed or refuted by a comparison.
 #[derive(Keys)]
 #[keys(name = "[[claim]]")]
-struct ClaimKeys {
+pub(crate) struct ClaimKeys {
     /// The claim, in words.
     #[key(example = "\"A is smoother than B\"")]
-    text: String,
+    pub(crate) text: String,
     /// The comparison that decides it: 'METRIC of "ARM" > METRIC of "ARM"'.
     #[key(example = "'restitution of \"A\" > restitution of \"B\"'")]
-    compare: String,
+    pub(crate) compare: String,
 }
 
 fn set(v: &View) -> Option<Vec<(String, Value)>> {
@@ -177,11 +176,6 @@ fn measured(v: &View) -> Option<Vec<Overlay>> {
         Overlay { name, column, times, values, source }
     };
     Some(overlays(v)?.into_iter().flatten().map(of).collect())
-}
-
-fn claims(v: &View) -> Option<Vec<Claim>> {
-    let claims: Vec<ClaimKeys> = v.get("claim")?;
-    Some(claims.into_iter().map(|ClaimKeys { text, compare }| Claim { text, compare }).collect())
 }
 
 fn of_arms(v: &View) -> Option<Vec<Expect>> {

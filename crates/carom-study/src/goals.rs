@@ -1,6 +1,7 @@
 //! Checks that the records of a study will contain what its goal compares.
 
 use carom_record::study::design::Goal;
+use carom_record::study::groups::is_stress;
 use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
@@ -12,16 +13,12 @@ struct Compared {
     help: &'static str,
 }
 
-fn quantity(column: &str) -> &str {
-    column.rsplit('.').next().unwrap_or_default()
-}
-
 /// The columns that a goal compares; none if every record has it.
 fn compared(goal: Goal) -> Option<Compared> {
     let of = |is_column, missing, help| Some(Compared { is_column, missing, help });
     match goal {
         Goal::Stress => of(
-            |column| quantity(column).starts_with("sigma_") || quantity(column) == "von_mises",
+            is_stress,
             "no probe records a stress",
             "add a [[probe]] with a stress in `record`, for example \"von_mises\", or choose another goal",
         ),

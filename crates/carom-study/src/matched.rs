@@ -143,15 +143,11 @@ pub(crate) fn settle(
     if anchors.iter().any(not_ended) {
         return Ok(false);
     }
-    let budget = |level: usize| -> Result<Option<f64>, RecordError> {
-        let arm = anchors.iter().map(|i| &manifest.arms[*i]).find(|arm| arm.role.level == level);
-        arm.map_or(Ok(None), |arm| cost_of(&directory.join(&arm.directory)))
-    };
-    let levels = design.steps.len().max(1);
-    let budgets = (0..levels).map(budget).collect::<Result<Vec<_>, _>>()?;
     let settled: Mutex<Vec<(usize, u64, Option<f64>)>> = Mutex::default();
     let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
-        let budget = budgets.get(manifest.arms[i].role.level).copied().flatten();
+        let is_anchor = |arm: &&Arm| arm.role.level == manifest.arms[i].role.level;
+        let anchor = anchors.iter().map(|i| &manifest.arms[*i]).find(is_anchor);
+        let budget = anchor.map_or(Ok(None), |arm| cost_of(&directory.join(&arm.directory)))?;
         let (ended, steps, share) = pilot(manifest, directory, i, budget, progress, stop)?;
         if ended.status != Status::Stopped {
             settled.lock().unwrap_or_else(PoisonError::into_inner).push((i, steps, share));

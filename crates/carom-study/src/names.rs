@@ -154,20 +154,13 @@ mod tests {
     #[test]
     fn claims_name_the_arms_as_they_are() {
         let mut file = StudyFile {
-            claims: vec![carom_record::study::Claim {
+            claims: vec![file::ClaimKeys {
                 text: String::new(),
                 compare: "restitution of 'hht, Δt 0.005' > 2 * restitution of \"hht, Δt 0.0025\"".into(),
             }],
             ..StudyFile::default()
         };
-        let draft = |name: &str| Draft {
-            name: name.into(),
-            path: String::new(),
-            sets: Vec::new(),
-            case: None,
-            expect: (String::new(), String::new()),
-            role: carom_record::study::design::Role::default(),
-        };
+        let draft = |name: &str| Draft { name: name.into(), ..Draft::default() };
         resolve(&mut file, &[draft("hht, Δt 5e-3"), draft("hht, Δt 2.5e-3")]);
         let compare = "restitution of 'hht, Δt 5e-3' > 2 * restitution of \"hht, Δt 2.5e-3\"";
         assert_eq!(file.claims[0].compare, compare);

@@ -5,17 +5,17 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use carom_record::study::design::{Design, Goal};
-use carom_record::study::{Arm, StudyManifest, StudySource};
+use carom_record::study::{Arm, Claim, StudyManifest, StudySource};
 use carom_record::{Machine, Source, Status, Warning, now};
 use carom_run::case::{Case, CaseError, Document};
 
 use crate::arms::{self, Draft};
 use crate::comparable;
 use crate::expects;
-use crate::file::{self, StudyFile};
+use crate::file::{self, ClaimKeys, StudyFile};
 use crate::goals;
 use crate::names;
-use crate::resolved::{Base, Checked, Planned, bases, stored};
+use crate::resolved::{Base, Checked, Planned, bases};
 
 /// A study that can be started.
 #[derive(Clone, Debug)]
@@ -89,9 +89,7 @@ impl Plan {
         checked.end()?;
         let planned = checked.arms(&file, drafts, &bases)?;
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
-        expects::overlays(&file.overlays, &known, &mut problems);
-        expects::check(&file.expects, &file.overlays, &known, &mut problems);
-        expects::claims(&file.claims, &file.overlays, &known, &mut problems);
+        expects::check(&file, &known, &mut problems);
         goals::check(&file, &known, &mut problems);
         let drafts: Vec<(&Draft, &Case)> = planned.iter().map(|p| (&p.draft, &p.case)).collect();
         comparable::check(&file, &drafts, &mut problems);
@@ -101,8 +99,8 @@ impl Plan {
         checked.end()?;
         let manifest = manifest(study, file, &bases, &planned, members);
         let arm = |p: Planned| PlannedArm {
+            source: Source { text: p.base.text.clone(), sets: p.sets(), ..Source::default() },
             case: p.case,
-            source: Source { text: p.base.text.clone(), sets: p.sets, ..Source::default() },
             warnings: p.warnings,
         };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
@@ -153,10 +151,8 @@ fn manifest(
     };
     let texts = std::iter::once(source.case.clone()).chain(source.others.values().cloned());
     let input_hash = Source { text: source.study.clone(), sets: texts.collect(), ..Source::default() }.hash();
-    let arm = |(i, p): (usize, &Planned)| {
-        let directory = format!("arms/{:02}-{}", i + 1, arms::slug(&p.draft.name));
-        stored(&p.draft, directory, p.sets.clone(), &p.case)
-    };
+    let arm =
+        |(i, p): (usize, &Planned)| p.stored(format!("arms/{:02}-{}", i + 1, arms::slug(&p.draft.name)));
     let design = file.design.map(|kind| {
         let of = |level: usize| planned.iter().find(|p| p.draft.role.level == level && !p.draft.role.fine);
         let cost_of = arms::cost_of(&file).unwrap_or_default();
@@ -183,7 +179,7 @@ fn manifest(
         ensemble: file.ensemble,
         members,
         overlays: file.overlays,
-        claims: file.claims,
+        claims: file.claims.into_iter().map(|ClaimKeys { text, compare }| Claim { text, compare }).collect(),
         expects: file.expects,
         source,
     }

@@ -6,20 +6,15 @@ use std::path::Path;
 
 use carom_record::Warning;
 use carom_record::study::Arm;
-use carom_record::study::design::{MemberOf, Role};
 use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
 use carom_run::{Setup, warnings};
 
 use crate::arms::{self, Draft};
 use crate::file::StudyFile;
 
-/// Changes of a case, the case and its warnings.
-type Resolved = (Vec<String>, Case, Vec<Warning>);
-
 /// An arm whose case is valid.
 pub(crate) struct Planned<'a> {
     pub(crate) draft: Draft,
-    pub(crate) sets: Vec<String>,
     pub(crate) case: Case,
     pub(crate) warnings: Vec<Warning>,
     pub(crate) base: &'a Base,
@@ -88,15 +83,11 @@ impl<'s> Checked<'s> {
         Ok(cases)
     }
 
-    /// The changes of a draft, its case and warnings; none if the case is wrong.
-    fn resolved(&mut self, draft: &Draft, base: &Base) -> Result<Option<Resolved>, CaseError> {
-        let mut sets = changes(draft);
-        match resolved(&base.name, &base.text, &sets) {
-            Ok((case, warnings)) => {
-                sets.pop();
-                Ok(Some((sets, case, warnings)))
-            }
-            Err(error) => self.add(draft, base, error, resolved).map(|()| None),
+    /// A draft with its case and warnings; none if the case is wrong.
+    fn planned<'a>(&mut self, draft: Draft, base: &'a Base) -> Result<Option<Planned<'a>>, CaseError> {
+        match resolved(&base.name, &base.text, &changes(&draft)) {
+            Ok((case, warnings)) => Ok(Some(Planned { draft, case, warnings, base })),
+            Err(error) => self.add(&draft, base, error, resolved).map(|()| None),
         }
     }
 
@@ -152,10 +143,8 @@ impl<'s> Checked<'s> {
         planned: &mut Vec<Planned<'a>>,
     ) -> Result<(), CaseError> {
         for draft in drafts {
-            if let Some(base) = base_of(file, &draft, bases)
-                && let Some((sets, case, warnings)) = self.resolved(&draft, base)?
-            {
-                planned.push(Planned { draft, sets, case, warnings, base });
+            if let Some(base) = base_of(file, &draft, bases) {
+                planned.extend(self.planned(draft, base)?);
             }
         }
         Ok(())
@@ -165,12 +154,10 @@ impl<'s> Checked<'s> {
     pub(crate) fn members(&mut self, file: &StudyFile, planned: &[Planned]) -> Result<Vec<Arm>, CaseError> {
         let mut members = Vec::new();
         for (i, arm) in planned.iter().enumerate() {
-            let all = file.ensemble.iter().flat_map(|e| arms::members(e, &arm.draft, &arm.case));
-            for (j, (member, draft)) in all.enumerate() {
-                let Some((sets, case, _)) = self.resolved(&draft, arm.base)? else { continue };
-                let role = Role { member: Some(MemberOf { arm: i, member }), ..draft.role.clone() };
+            let all = file.ensemble.iter().flat_map(|e| arms::members(e, i, &arm.draft, &arm.case));
+            for (j, draft) in all.enumerate() {
                 let directory = format!("members/{:02}-{:03}", i + 1, j + 1);
-                members.push(Arm { role, ..stored(&draft, directory, sets, &case) });
+                members.extend(self.planned(draft, arm.base)?.map(|member| member.stored(directory)));
             }
         }
         let is_swapped = |run: &Arm| run.role.member.is_some_and(|of| of.member.swapped);
@@ -182,17 +169,24 @@ impl<'s> Checked<'s> {
     }
 }
 
-/// Record of an arm in `study.json`.
-pub(crate) fn stored(draft: &Draft, directory: String, sets: Vec<String>, case: &Case) -> Arm {
-    Arm {
-        name: draft.name.clone(),
-        directory,
-        sets,
-        steps: case.time.steps() as u64,
-        role: draft.role.clone(),
-        case_path: draft.case.clone(),
-        facts: case.facts(),
-        case: case.to_json().unwrap_or_default(),
+impl Planned<'_> {
+    /// The changes of its case.
+    pub(crate) fn sets(&self) -> Vec<String> {
+        self.draft.sets.iter().map(|(set, _)| set.clone()).collect()
+    }
+
+    /// Record of an arm in `study.json`.
+    pub(crate) fn stored(&self, directory: String) -> Arm {
+        Arm {
+            name: self.draft.name.clone(),
+            directory,
+            sets: self.sets(),
+            steps: self.case.time.steps() as u64,
+            role: self.draft.role.clone(),
+            case_path: self.draft.case.clone(),
+            facts: self.case.facts(),
+            case: self.case.to_json().unwrap_or_default(),
+        }
     }
 }
 
@@ -201,9 +195,9 @@ fn base_of<'a>(file: &StudyFile, draft: &Draft, bases: &'a BTreeMap<String, Base
     draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name))
 }
 
-/// The changes of a draft, the last of which are its expectations.
+/// The changes of a draft, with its expectations.
 fn changes(draft: &Draft) -> Vec<String> {
-    draft.sets.iter().map(|(set, _)| set).chain([&draft.expect.0]).cloned().collect()
+    draft.sets.iter().map(|(set, _)| set.clone()).chain([draft.expectations()]).collect()
 }
 
 /// The problem that no steps of the computed reference both divide the end time and have the ratios

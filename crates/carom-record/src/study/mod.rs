@@ -51,7 +51,7 @@ use std::path::{Path, PathBuf};
 
 use crate::metrics::Metric;
 use crate::{Expectation, RecordError, Run, Status, Warning};
-pub use arm::{Arm, count, sets_step, step};
+pub use arm::{Arm, count, scalar, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
 pub use claim::{Claim, Comparison, Confirmed, Verdict};
@@ -60,7 +60,7 @@ use design::{Goal, MemberOf};
 use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
 use measure::standing;
-pub use orders::{Refinement, numeric_keys, refinements, varied_keys};
+pub use orders::{Refined, Refinement, refined_keys};
 use ranking::{Ranking, Ranks};
 use reference::{Reference, Standing, Trajectory};
 pub use row::Row;

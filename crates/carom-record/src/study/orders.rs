@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use super::arm::{Arm, scalar, step};
+use super::arm::{Arm, step};
 use super::arms::{ArmRecords, Needs};
 use super::manifest::StudyManifest;
 use crate::Reason;
@@ -45,12 +45,8 @@ pub fn has_words(name: &str, text: &str) -> bool {
 
 /// Groups of at least two arms that differ only in `key`, in the order of their first arms. With
 /// `name`: one group of all arms whose names contain it, with any other changes. The reference is
-/// not included, but the three runs of a computed reference are a group of their own.
-pub fn refinements(manifest: &StudyManifest, key: &str, name: Option<&str>) -> Vec<Refinement> {
-    groups(manifest, key, name, step)
-}
-
-/// Groups arms as [`refinements`] does; `value` gives the value of an arm for the key.
+/// not included, but the three runs of a computed reference are a group of their own. `value` gives
+/// the value of an arm for the key.
 fn groups(
     manifest: &StudyManifest,
     key: &str,
@@ -92,37 +88,44 @@ fn others<'a>(arm: &'a Arm, key: &str) -> impl Iterator<Item = &'a str> {
 fn against_reference(
     order: &OrderOf,
     manifest: &StudyManifest,
-    reference: Option<&str>,
+    reference: &str,
     [(h1, two), (h2, three)]: [(f64, usize); 2],
     errors: [f64; 2],
 ) -> Result<f64, Reason> {
     let key = order.against.as_str();
     let arms = &manifest.arms;
     let alike = |arm: &&Arm| [two, three].iter().all(|i| others(arm, key).eq(others(&arms[*i], key)));
-    let reference = arms.iter().find(|arm| Some(arm.name.as_str()) == reference).filter(alike);
+    let reference = arms.iter().find(|arm| arm.name == reference).filter(alike);
     match reference.and_then(|arm| step(arm, key)) {
         Some(own) => from_differences([h1, h2, own], [errors[0] - errors[1], errors[1]]),
         None => from_errors([h1, h2], errors),
     }
 }
 
-/// The quantity of an order.
-enum Of {
+/// A quantity under refinement.
+pub enum Refined {
+    /// A number of a record.
     Number(Question),
+    /// A column of a record.
     Column(Series),
 }
 
-fn of(order: &OrderOf) -> Result<Of, Reason> {
-    let parsed = Question::parse(&order.of);
-    match parsed {
-        // A single word that is not a metric is a column.
-        Ok(Expression::Quantity(Quantity::Metric(name, None)))
-            if !name.contains(':') && !question::metric_names().contains(&name.as_str()) =>
-        {
-            Series::parse(&name).map(Of::Column)
+impl OrderOf {
+    /// The quantity of the order.
+    ///
+    /// # Errors
+    /// What is wrong with its text.
+    pub fn quantity(&self) -> Result<Refined, Reason> {
+        match Question::parse(&self.of) {
+            // A single word that is not a metric is a column.
+            Ok(Expression::Quantity(Quantity::Metric(name, None)))
+                if !name.contains(':') && !question::metric_names().contains(&name.as_str()) =>
+            {
+                Series::parse(&name).map(Refined::Column)
+            }
+            Ok(question) => Ok(Refined::Number(question)),
+            Err(_) => Series::parse(&self.of).map(Refined::Column),
         }
-        Ok(question) => Ok(Of::Number(question)),
-        Err(why) => Series::parse(&order.of).map(Of::Column).map_err(|_| why),
     }
 }
 
@@ -131,10 +134,12 @@ pub(super) fn needs(manifest: &StudyManifest) -> Needs {
     let mut needs = Needs::default();
     for expect in &manifest.expects {
         let arms = manifest.arms.iter().map(|a| a.name.as_str());
-        match expect.order.as_ref().map(of) {
+        match expect.order.as_ref().map(OrderOf::quantity) {
             None => needs.questions.extend(Question::parse(&expect.what)),
-            Some(Ok(Of::Number(question))) => needs.questions.extend(arms.map(|arm| question.of_arm(arm))),
-            Some(Ok(Of::Column(series))) => needs.series.extend(arms.map(|arm| series.of_arm(arm))),
+            Some(Ok(Refined::Number(question))) => {
+                needs.questions.extend(arms.map(|arm| question.of_arm(arm)));
+            }
+            Some(Ok(Refined::Column(series))) => needs.series.extend(arms.map(|arm| series.of_arm(arm))),
             Some(Err(_)) => {}
         }
     }
@@ -152,7 +157,7 @@ pub(super) fn judge(
     let exact = manifest.reference.as_deref() == Some("exact");
     let errors = exact || order.exact.is_some() || expect.deviation.is_some() || reference.is_some();
     let least = if errors { 2 } else { 3 };
-    let groups = refinements(manifest, &order.against, order.arms.as_deref());
+    let groups = groups(manifest, &order.against, order.arms.as_deref(), step);
     let words = |group: &str| {
         // The words that select a group may end with the comma that follows them in its names.
         let group = group.trim_end_matches([',', ' ']);
@@ -208,71 +213,60 @@ fn observed(
     records: &ArmRecords,
     reference: Option<&str>,
 ) -> Result<f64, Reason> {
-    let name = |i: &usize| manifest.arms[*i].name.as_str();
+    let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".into()) };
+    let [.., two, three] = group.arms[..] else { return Err("two arms are needed".into()) };
+    let name = |arm: usize| manifest.arms[arm].name.as_str();
     let norm = expect.norm.unwrap_or(Norm::Rms);
     let window = expect.window();
-    let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".into()) };
-    let [.., two, three] = &group.arms[..] else { return Err("two arms are needed".into()) };
-    let triple = || -> Result<_, Reason> {
-        let n = group.steps.len();
-        if n < 3 {
-            return Err("three steps are needed".into());
+    let quantity = order.quantity()?;
+    // Values of arms with their times; a number is one value without a time.
+    let of_arms = |arms: &[&str]| match &quantity {
+        Refined::Number(question) => {
+            let value = |arm: &&str| Ok(vec![question.of_arm(arm).answer(records, window)?]);
+            Ok((Vec::new(), arms.iter().map(value).collect::<Result<_, Reason>>()?))
         }
-        Ok(([group.steps[n - 3], h1, h2], name(&group.arms[n - 3])))
+        Refined::Column(series) => {
+            let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(arm)).collect();
+            question::common(&columns, records, window)
+        }
     };
-    let with_reference =
-        |errors: [f64; 2]| against_reference(order, manifest, reference, [(h1, *two), (h2, *three)], errors);
-    match of(order)? {
-        Of::Number(question) => {
-            let value = |arm: &str| question.of_arm(arm).answer(records, window);
-            let second = value(name(two))?;
-            let last = value(name(three))?;
+    let finest = || of_arms(&[name(two), name(three)]);
+    match &quantity {
+        Refined::Number(_) => {
             if let Some(exact) = order.exact {
-                return from_errors([h1, h2], [second - exact, last - exact]);
+                let (_, values) = finest()?;
+                return from_errors([h1, h2], [values[0][0] - exact, values[1][0] - exact]);
             }
-            if let Some(arm) = reference {
-                let close = value(arm)?;
-                return with_reference([second - close, last - close]);
-            }
-            let (steps, first) = triple()?;
-            from_differences(steps, [value(first)? - second, second - last])
         }
-        Of::Column(series) => {
-            let common = |arms: &[&str]| {
-                let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(arm)).collect();
-                question::common(&columns, records, window)
-            };
-            if let Some(deviation) = deviation(expect, manifest, *three, &series, norm)? {
-                let (times, columns) = common(&[name(two), name(three)])?;
-                return from_errors(
-                    [h1, h2],
-                    [deviation.of(&times, &columns[0])?, deviation.of(&times, &columns[1])?],
-                );
+        Refined::Column(series) => {
+            if let Some(deviation) = deviation(expect, manifest, three, series, norm)? {
+                let (times, columns) = finest()?;
+                let error = |column: usize| deviation.of(&times, &columns[column]);
+                return from_errors([h1, h2], [error(0)?, error(1)?]);
             }
-            let apart =
-                |a: &[f64], b: &[f64]| norm.of(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
-            if let Some(arm) = reference {
-                let (_, c) = common(&[name(two), name(three), arm])?;
-                return with_reference([apart(&c[0], &c[2]), apart(&c[1], &c[2])]);
-            }
-            let (steps, first) = triple()?;
-            let (_, c) = common(&[first, name(two), name(three)])?;
-            from_differences(steps, [apart(&c[0], &c[1]), apart(&c[1], &c[2])])
         }
     }
+    let apart = |a: &[f64], b: &[f64]| {
+        let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        match quantity {
+            Refined::Number(_) => differences[0],
+            Refined::Column(_) => norm.of(&differences),
+        }
+    };
+    if let Some(reference) = reference {
+        let (_, values) = of_arms(&[name(two), name(three), reference])?;
+        let errors = [apart(&values[0], &values[2]), apart(&values[1], &values[2])];
+        return against_reference(order, manifest, reference, [(h1, two), (h2, three)], errors);
+    }
+    let first = group.steps.len().checked_sub(3).ok_or("three steps are needed")?;
+    let (_, values) = of_arms(&[name(group.arms[first]), name(two), name(three)])?;
+    let differences = [apart(&values[0], &values[1]), apart(&values[1], &values[2])];
+    from_differences([group.steps[first], h1, h2], differences)
 }
 
-/// Keys in which arms differ only by steps, with their groups of at least `least` arms.
-pub fn numeric_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
-    keys(manifest, least, step)
-}
-
-/// Keys in which arms differ only by numbers of any sign, which [`Refinement::steps`] are.
-pub fn varied_keys(manifest: &StudyManifest, least: usize) -> BTreeMap<String, Vec<Refinement>> {
-    keys(manifest, least, scalar)
-}
-
-fn keys(
+/// Keys in which arms differ only by their values, with their groups of at least `least` arms;
+/// `value`: [`step`], or [`scalar`] for numbers of any sign.
+pub fn refined_keys(
     manifest: &StudyManifest,
     least: usize,
     value: fn(&Arm, &str) -> Option<f64>,

@@ -4,7 +4,7 @@
 
 use carom_record::Reason;
 use carom_record::order::{self, MARGIN};
-use carom_record::study::{Refinement, Study, count, numeric_keys};
+use carom_record::study::{Refinement, Study, count, refined_keys, step};
 use maud::{Markup, html};
 
 use super::settings::own_settings;
@@ -19,7 +19,7 @@ const ENOUGH: usize = 4;
 
 /// The section of the page; nothing for a study without refinement.
 pub(super) fn section(study: &Study) -> Markup {
-    let keys = numeric_keys(&study.manifest, LEAST);
+    let keys = refined_keys(&study.manifest, LEAST, step);
     let is_enough = |group: &Refinement| group.steps.len() >= ENOUGH;
     html! {
         @for (key, groups) in &keys {

@@ -3,7 +3,7 @@
 //! factor of three are fitted as a power. Arms that failed or created energy are left out.
 
 use carom_record::metrics::Metric;
-use carom_record::study::{Refinement, Study, count, varied_keys};
+use carom_record::study::{Refinement, Study, count, refined_keys, scalar};
 use maud::{Markup, html};
 
 use super::collected::{common_time, time_unit};
@@ -170,7 +170,10 @@ fn axis(study: &Study, key: &str) -> String {
 
 /// A figure for every key.
 pub(super) fn plots(study: &Study) -> Vec<Plot> {
-    varied_keys(&study.manifest, LEAST).iter().filter_map(|(key, groups)| plot(study, key, groups)).collect()
+    refined_keys(&study.manifest, LEAST, scalar)
+        .iter()
+        .filter_map(|(key, groups)| plot(study, key, groups))
+        .collect()
 }
 
 fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
@@ -271,7 +274,7 @@ fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
 
 /// Slopes and exponents with their intervals.
 pub(super) fn section(study: &Study) -> Markup {
-    let mut found = varied_keys(&study.manifest, LEAST);
+    let mut found = refined_keys(&study.manifest, LEAST, scalar);
     found.retain(|_, groups| groups.iter().any(|group| group.arms.len() >= FITTED));
     html! {
         @if !found.is_empty() {
