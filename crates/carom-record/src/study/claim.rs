@@ -88,11 +88,11 @@ impl Verdict {
         let ratio = |(l, r): (f64, f64)| l / r * (fr / fl);
         // Dividing by a negative quantity turns the comparison round; by one whose sign differs
         // between members, nothing can be said of the ratio.
-        let turned = |r: f64| (fl * (r / fr) < 0.0, fl * (r / fr) > 0.0);
-        let rights: Vec<f64> = decided.iter().map(|(_, r)| *r).chain(right).collect();
+        let divisors: Vec<f64> =
+            decided.iter().map(|(_, r)| *r).chain(right).map(|r| fl * (r / fr)).collect();
         let bound = comparison.and_then(|c| match () {
-            () if rights.iter().all(|r| turned(*r).1) => Some((c.operator.symbol(), fr / fl)),
-            () if rights.iter().all(|r| turned(*r).0) => Some((c.operator.turned().symbol(), fr / fl)),
+            () if divisors.iter().all(|x| *x > 0.0) => Some((c.operator.symbol(), fr / fl)),
+            () if divisors.iter().all(|x| *x < 0.0) => Some((c.operator.turned().symbol(), fr / fl)),
             () => None,
         });
         let confirmed = || Confirmed {

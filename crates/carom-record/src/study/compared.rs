@@ -1,10 +1,10 @@
-//! Comparison of an arm with the reference: deviations of columns, over all rows and in the smooth
-//! phases before and after the first contact, and its delay.
+//! Comparison of an arm with the reference: deviations of columns in the smooth phases before and
+//! after the first contact, and its delay.
 
 use super::arm::step;
 use super::groups::is_trajectory;
 use super::manifest::StudyManifest;
-use super::reference::{Reference, Standing, Trajectory};
+use super::reference::{Reference, Trajectory};
 use crate::Reason;
 use crate::metrics::{self, Distance, phase_shift};
 use crate::order::from_errors;
@@ -14,9 +14,7 @@ use crate::order::from_errors;
 pub struct Deviated {
     /// Name of the column.
     pub column: String,
-    /// Root mean square of the deviations over all rows.
-    pub whole: Option<f64>,
-    /// Root mean square over the rows before the first contact of the reference.
+    /// Root mean square of the deviations over the rows before the first contact of the reference.
     pub before: Option<f64>,
     /// Root mean square over the rows after the first contact of the reference.
     pub after: Option<f64>,
@@ -55,15 +53,14 @@ impl Compared {
             };
             Some(Deviated {
                 column: column.clone(),
-                whole: within(f64::NEG_INFINITY, f64::INFINITY),
                 before: contact.and_then(|(start, _)| within(f64::NEG_INFINITY, start)),
                 after: contact.and_then(|(_, end)| within(end, f64::INFINITY)),
             })
         };
-        let columns: Vec<Deviated> = arm.columns.iter().filter_map(deviated).collect();
-        let main = columns.iter().filter(|c| is_trajectory(&c.column)).find_map(|c| {
-            let late = phase_shift(&arm.times, arm.columns.get(&c.column)?, reference.column(&c.column)?)?;
-            Some((c.column.clone(), late))
+        let mut motions = arm.columns.iter().filter(|(column, _)| is_trajectory(column));
+        let late = motions.find_map(|(column, values)| {
+            let late = phase_shift(&arm.times, values, reference.column(column)?)?;
+            Some((column.clone(), late))
         });
         let right = reference.finest();
         let groups = reference.known.iter().map(|known| {
@@ -76,7 +73,8 @@ impl Compared {
             };
             known.windows.iter().map(far).collect()
         });
-        Self { groups: groups.collect(), columns, late: main }
+        let columns = arm.columns.iter().filter_map(deviated);
+        Self { columns: columns.collect(), groups: groups.collect(), late }
     }
 
     /// Deviation of a column.
@@ -108,10 +106,7 @@ pub fn phase_orders(
     reference: &Reference,
 ) -> Option<PhaseOrders> {
     let [.., (h1, coarse), (h2, fine)] = arms else { return None };
-    let uncertainty = match reference.uncertainty(column) {
-        Standing::Established { uncertainty, .. } => Ok(uncertainty),
-        Standing::Not(why) => Err(why),
-    };
+    let uncertainty = reference.uncertainty(column);
     let order = |of: fn(&Deviated) -> Option<f64>| -> Result<f64, Reason> {
         let errors = [coarse, fine].map(|c| c.column(column).and_then(of));
         let [Some(before), Some(after)] = errors else {

@@ -17,6 +17,7 @@
 //! the width h^(q/(q + 1)) (G. W. Hedstrom, Math. Comp. 29, 1975), 2/3 for q = 2. Impulse, rebound
 //! and the end of contact follow from the arrival of that front.
 
+use crate::Reason;
 use crate::order::{SAFE, from_differences};
 
 /// Observed order and uncertainty.
@@ -38,26 +39,46 @@ const UNSAFE: f64 = 3.0;
 /// Share of the differences below which the last one is round-off.
 const SETTLED: f64 = 1e-9;
 
-/// Uncertainty and order from the values at decreasing sizes; none for a single run.
-pub fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
+/// Uncertainty and order from the distances between the values at successive sizes.
+///
+/// # Errors
+/// There is a single run.
+pub(super) fn converged_by(
+    sizes: &[f64],
+    distances: impl DoubleEndedIterator<Item = f64>,
+) -> Result<Converged, Reason> {
+    // Values whose differences are these distances.
+    let mut values = vec![0.0];
+    for distance in distances.rev() {
+        values.push(values[values.len() - 1] + distance);
+    }
+    values.reverse();
+    converged(sizes, &values)
+}
+
+/// Uncertainty and order from the values at decreasing sizes.
+///
+/// # Errors
+/// There is a single run.
+pub fn converged(sizes: &[f64], values: &[f64]) -> Result<Converged, Reason> {
     let n = values.len().min(sizes.len());
     if n < 2 {
-        return None;
+        return Err("a single run gives no error estimate".into());
     }
     let f1 = values[n - 1];
     let f2 = values[n - 2];
     let r21 = sizes[n - 2] / sizes[n - 1];
     if n == 2 {
-        return Some(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
+        return Ok(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
     }
     let f3 = values[n - 3];
     let range = [(f1 - f2).abs(), (f2 - f3).abs(), (f1 - f3).abs()].into_iter().fold(0.0, f64::max);
     if range == 0.0 {
-        return Some(Converged { uncertainty: 0.0, order: None });
+        return Ok(Converged { uncertainty: 0.0, order: None });
     }
     // What no longer changes converges faster than any order that is believed.
     if (f1 - f2).abs() <= SETTLED * range {
-        return Some(Converged { uncertainty: SAFE * range, order: None });
+        return Ok(Converged { uncertainty: SAFE * range, order: None });
     }
     let steps = [sizes[n - 3], sizes[n - 2], sizes[n - 1]];
     let order = from_differences(steps, [f3 - f2, f2 - f1]).ok().filter(|p| *p > 0.0);
@@ -67,5 +88,5 @@ pub fn converged(sizes: &[f64], values: &[f64]) -> Option<Converged> {
         Some(p) => (SAFE * error(p.min(OF_A_JUMP))).min(UNSAFE * range),
         None => UNSAFE * range,
     };
-    Some(Converged { uncertainty, order })
+    Ok(Converged { uncertainty, order })
 }

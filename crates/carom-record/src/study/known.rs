@@ -1,7 +1,7 @@
 //! Histories that a reference knows, with their uncertainties: groups of columns with one scale,
 //! compared in the norm in which arms are compared with them.
 
-use super::convergence::converged;
+use super::convergence::converged_by;
 use super::digits::short;
 use super::groups::{Group, Kind};
 use super::levels::Levels;
@@ -61,22 +61,13 @@ impl Apart {
         Some(Self { levels, members, checks: farthest(&runs.checks)? })
     }
 
-    /// Values whose differences are the distances between the levels.
-    fn cumulated(&self) -> Vec<f64> {
-        let mut values = vec![0.0];
-        for level in self.levels.iter().rev() {
-            values.push(values[values.len() - 1] + level.smooth);
-        }
-        values.reverse();
-        values
-    }
-
     /// Uncertainty of the average.
-    fn smooth(&self, kind: Kind, sizes: &[f64]) -> Option<f64> {
-        let last = self.levels.last()?.smooth;
-        let refined = converged(sizes, &self.cumulated())?.uncertainty;
-        let least = if kind == Kind::Motion { 0.0 } else { last };
-        Some(self.checks.smooth.max(refined).max(least) + self.members.smooth)
+    fn smooth(&self, kind: Kind, sizes: &[f64]) -> Result<f64, Reason> {
+        let distances = self.levels.iter().map(|level| level.smooth);
+        let refined = converged_by(sizes, distances)?.uncertainty;
+        let last = self.levels.last().filter(|_| kind != Kind::Motion);
+        let least = last.map_or(0.0, |level| level.smooth);
+        Ok(self.checks.smooth.max(refined).max(least) + self.members.smooth)
     }
 
     /// Uncertainty of the rough part, where that converges.
@@ -106,13 +97,10 @@ impl Known {
         }
         let found: Option<Vec<Apart>> = windows.iter().map(|w| Apart::of(&group, runs, *w)).collect();
         let sizes = runs.sizes();
-        let bound = |apart: &Apart| Some(apart.smooth(group.kind, &sizes)? / scale);
+        let bound = |apart: &Apart| Ok(apart.smooth(group.kind, &sizes)? / scale);
         let uncertainty = match &found {
             _ if !runs.refines_mesh() => Err(ONE_MESH.into()),
-            Some(found) => {
-                let bounds = found.iter().map(bound).collect::<Option<Vec<f64>>>();
-                bounds.ok_or_else(|| "a single run gives no error estimate".into()).and_then(is_resolved)
-            }
+            Some(found) => found.iter().map(bound).collect::<Result<_, _>>().and_then(is_resolved),
             None => Err("a run of the reference lacks it".into()),
         };
         let noise = found.as_ref().and_then(|found| Some(found.first()?.rough()? / scale));

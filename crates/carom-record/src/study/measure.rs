@@ -3,8 +3,10 @@
 use super::compared::Compared;
 use super::design::Goal;
 use super::groups::Kind;
-use super::reference::{Known, Reference, Standing};
+use super::manifest::StudyManifest;
+use super::reference::{Established, Known, Reference};
 use super::row::Row;
+use crate::Reason;
 
 /// The measure of a ranking.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,9 +56,37 @@ impl Errors {
 }
 
 /// A measure with the errors of all runs.
-pub(super) struct Measured {
+pub(super) struct Measured<'a> {
+    pub(super) manifest: &'a StudyManifest,
     pub(super) measure: Measure,
     pub(super) runs: Vec<Option<Errors>>,
+}
+
+impl Measured<'_> {
+    /// The errors of the members of an arm.
+    fn members(&self, arm: usize) -> impl Iterator<Item = &Errors> {
+        self.manifest.runs_of(arm).into_iter().filter_map(|run| self.runs[run].as_ref())
+    }
+
+    /// Whether the first of two arms is distinguishably better.
+    pub(super) fn is_better(&self, arm: usize, other: usize) -> bool {
+        let beats = |far: &Errors| self.members(arm).all(|own| own.is_nearer(far, self.measure.uncertainty));
+        self.members(other).any(beats)
+    }
+
+    /// The largest distance of a member of one arm from the closest member of the other.
+    fn excess(&self, arm: usize, other: usize) -> f64 {
+        let closest =
+            |far: &Errors| self.members(arm).map(|own| own.distance(far)).fold(f64::INFINITY, f64::min);
+        self.members(other).map(closest).fold(0.0, f64::max)
+    }
+
+    /// Whether the errors of two arms differ by at most a share of them, whatever the solution.
+    pub(super) fn is_within(&self, share: f64, arm: usize, other: usize) -> bool {
+        let error = self.members(arm).map(|own| own.error).fold(0.0, f64::max);
+        let apart = self.excess(arm, other).max(self.excess(other, arm));
+        apart <= share * (error - self.measure.uncertainty)
+    }
 }
 
 /// Least uncertainty of an error in a metric: an energy that is conserved up to round-off is
@@ -80,13 +110,15 @@ const CONSERVED: [&str; 3] = ["energy_lost", "energy_drift", "energy_lost_impact
 const DISSIPATED: [&str; 2] = ["friction_lost", "plastic_lost"];
 
 /// The reference value of a metric of a study with these runs.
-pub fn standing(reference: Option<&Reference>, rows: &[Row], metric: &str) -> Standing {
+///
+/// # Errors
+/// The reason why there is none.
+pub fn standing(reference: Option<&Reference>, rows: &[Row], metric: &str) -> Result<Established, Reason> {
     let is_conserved = || rows.iter().all(|row| DISSIPATED.iter().all(|metric| row.value(metric).is_none()));
-    let is_zero = IDEAL.contains(&metric) || CONSERVED.contains(&metric) && is_conserved();
-    if is_zero {
-        return Standing::Established { value: 0.0, uncertainty: 0.0 };
+    if IDEAL.contains(&metric) || CONSERVED.contains(&metric) && is_conserved() {
+        return Ok(Established::default());
     }
-    reference.map_or_else(|| Standing::Not(NO_REFERENCE.to_owned()), |r| r.metric(metric))
+    reference.ok_or(NO_REFERENCE)?.metric(metric)
 }
 
 /// |m − r|, relative if r is not 0.
@@ -99,11 +131,16 @@ fn signed(value: f64, right: f64) -> f64 {
     if right == 0.0 { value } else { (value - right) / right.abs() }
 }
 
-/// The data that measures are computed from.
-pub(super) struct Judge<'a> {
-    pub(super) rows: &'a [Row],
-    pub(super) compared: &'a [Option<Compared>],
-    pub(super) reference: Option<&'a Reference>,
+/// The data of a study that rankings are made from.
+pub struct Ranks<'a> {
+    /// What is compared.
+    pub manifest: &'a StudyManifest,
+    /// The results of all runs.
+    pub rows: &'a [Row],
+    /// Their comparison with the reference.
+    pub compared: &'a [Option<Compared>],
+    /// The reference, if it has finished.
+    pub reference: Option<&'a Reference>,
 }
 
 /// Root mean square.
@@ -112,9 +149,9 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-impl Judge<'_> {
+impl<'a> Ranks<'a> {
     /// The measure of a goal, or why there is none; `window`: number of the window of averages.
-    pub(super) fn measured(&self, goal: Goal, window: usize) -> Result<Measured, String> {
+    pub(super) fn measured(&self, goal: Goal, window: usize) -> Result<Measured<'a>, Reason> {
         match goal {
             Goal::Energy => self.of_metrics(&["energy_error"]),
             Goal::Friction => self.of_metrics(&["friction_lost", "stick_share"]),
@@ -125,17 +162,17 @@ impl Judge<'_> {
     }
 
     /// The errors of those metrics that the reference establishes, root mean square.
-    fn of_metrics(&self, names: &[&str]) -> Result<Measured, String> {
+    fn of_metrics(&self, names: &[&str]) -> Result<Measured<'a>, Reason> {
         let mut known = Vec::new();
         let mut left_out = Vec::new();
         for name in names {
             match standing(self.reference, self.rows, name) {
-                Standing::Established { value, uncertainty } => known.push((*name, value, uncertainty)),
-                Standing::Not(why) => left_out.push(format!("{name} ({why})")),
+                Ok(Established { value, uncertainty }) => known.push((*name, value, uncertainty)),
+                Err(why) => left_out.push(format!("{name} ({why})")),
             }
         }
         if known.is_empty() {
-            return Err(left_out.join("; "));
+            return Err(left_out.join("; ").into());
         }
         let count = (known.len() as f64).sqrt();
         let of = |row: &Row| {
@@ -155,11 +192,11 @@ impl Judge<'_> {
             noise: None,
             left_out,
         };
-        Ok(Measured { measure, runs: self.rows.iter().map(of).collect() })
+        Ok(Measured { manifest: self.manifest, measure, runs: self.rows.iter().map(of).collect() })
     }
 
     /// The distance of groups of columns from the reference, relative to their scales.
-    fn of_groups(&self, kind: Kind, window: usize) -> Result<Measured, String> {
+    fn of_groups(&self, kind: Kind, window: usize) -> Result<Measured<'a>, Reason> {
         let reference = self.reference.ok_or(NO_REFERENCE)?;
         let all = reference.known.iter().enumerate().filter(|(_, known)| known.group.kind == kind);
         let mut used: Vec<(usize, &Known)> = Vec::new();
@@ -171,8 +208,8 @@ impl Judge<'_> {
             }
         }
         if used.is_empty() {
-            let none = || "the reference has no column of this kind".to_owned();
-            return Err(if left_out.is_empty() { none() } else { left_out.join("; ") });
+            let none = "the reference has no column of this kind";
+            return Err(if left_out.is_empty() { none.into() } else { left_out.join("; ").into() });
         }
         let names: Vec<&str> = used.iter().map(|(_, known)| known.group.name.as_str()).collect();
         let averaged = match used[0].1.windows.get(window) {
@@ -199,6 +236,6 @@ impl Judge<'_> {
             noise: noise.filter(|_| kind != Kind::Motion).map(|noise| rms(noise.into_iter())),
             left_out,
         };
-        Ok(Measured { measure, runs: self.compared.iter().map(of).collect() })
+        Ok(Measured { manifest: self.manifest, measure, runs: self.compared.iter().map(of).collect() })
     }
 }

@@ -50,7 +50,7 @@ pub mod verdict;
 use std::path::{Path, PathBuf};
 
 use crate::metrics::Metric;
-use crate::{Expectation, RecordError, Run, Status, Warning};
+use crate::{Expectation, Reason, RecordError, Run, Status, Warning};
 pub use arm::{Arm, count, scalar, sets_step, step};
 pub use arms::ArmRecords;
 use checks::Checks;
@@ -62,7 +62,7 @@ pub use manifest::{StudyManifest, StudySource};
 use measure::standing;
 pub use orders::{Refined, Refinement, refined_keys};
 use ranking::{Ranking, Ranks};
-use reference::{Reference, Standing, Trajectory};
+use reference::{Established, Reference, Trajectory};
 pub use row::Row;
 
 /// A study that has been read.
@@ -123,7 +123,7 @@ impl Study {
         let mut records = vec![ArmRecords::default(); kinds.len().max(1)];
         let reference = manifest.reference(directory)?;
         let contact = reference.as_ref().and_then(|r| {
-            let time = |name: &str| r.metric(name).established().map(|x| x.0);
+            let time = |name: &str| r.metric(name).ok().map(|known| known.value);
             time("contact_start").zip(time("contact_end"))
         });
         let mut rows = Vec::new();
@@ -200,7 +200,10 @@ impl Study {
     }
 
     /// The reference value of a metric.
-    pub fn standing(&self, metric: &str) -> Standing {
+    ///
+    /// # Errors
+    /// The reason why there is none.
+    pub fn standing(&self, metric: &str) -> Result<Established, Reason> {
         standing(self.reference.as_ref(), &self.rows, metric)
     }
 

@@ -19,18 +19,15 @@
 //! the arms.
 
 use super::arm::Arm;
-use super::compared::Compared;
 use super::design::Goal;
 use super::digits::short;
 use super::groups::Kind;
-use super::manifest::StudyManifest;
-use super::measure::{Errors, Judge, Measured};
-pub use super::measure::{Measure, error};
+use super::measure::{Errors, Measured};
+pub use super::measure::{Measure, Ranks, error};
 pub use super::ranked::{Apart, Ranked};
-use super::reference::Reference;
 use super::row::Row;
 pub use super::verdict::{Confidence, Verdict};
-use super::verdict::{EQUAL_ERROR, Field, recommended};
+use super::verdict::{Field, recommended};
 use crate::{Reason, Status};
 
 /// Identifier of the warning about energy that friction hides.
@@ -54,18 +51,6 @@ pub struct Ranking {
     pub apart: Vec<Apart>,
     /// The recommendation, or the reasons why there is none.
     pub verdict: Result<Verdict, Vec<String>>,
-}
-
-/// The data of a study that rankings are made from.
-pub struct Ranks<'a> {
-    /// What is compared.
-    pub manifest: &'a StudyManifest,
-    /// The results of all runs.
-    pub rows: &'a [Row],
-    /// Their comparison with the reference.
-    pub compared: &'a [Option<Compared>],
-    /// The reference, if it has finished.
-    pub reference: Option<&'a Reference>,
 }
 
 impl Ranks<'_> {
@@ -96,59 +81,31 @@ impl Ranks<'_> {
     }
 
     fn with_window(&self, goal: Goal, window: usize) -> Ranking {
-        let Self { manifest, rows, compared, reference } = *self;
         let mut apart: Vec<Apart> = self.arms().filter_map(|(arm, _)| self.apart(arm)).collect();
-        let judge = Judge { rows, compared, reference };
-        let Measured { measure, runs } = match judge.measured(goal, window) {
+        let measured = match self.measured(goal, window) {
             Ok(measured) => measured,
             Err(why) => {
                 let reasons = vec![format!("the reference establishes no measure of this goal: {why}")];
                 let levels = Vec::new();
-                return Ranking { goal, measure: Err(why.into()), levels, apart, verdict: Err(reasons) };
+                return Ranking { goal, measure: Err(why), levels, apart, verdict: Err(reasons) };
             }
         };
         let unknown = self.arms().filter(|(arm, _)| !apart.iter().any(|apart| apart.arm == *arm));
-        let unknown: Vec<Apart> = unknown.filter_map(|(arm, _)| self.unknown(arm, &runs)).collect();
+        let unknown: Vec<Apart> = unknown.filter_map(|(arm, _)| self.unknown(arm, &measured.runs)).collect();
         apart.extend(unknown);
-        let count = manifest.arms.iter().map(|arm| arm.role.level + 1).max().unwrap_or(0);
-        let members = |arm: usize| manifest.runs_of(arm).into_iter().filter_map(|run| runs[run].as_ref());
-        let is_better = |arm: usize, other: usize| {
-            let beats = |far: &Errors| members(arm).all(|own| own.is_nearer(far, measure.uncertainty));
-            members(other).any(beats)
-        };
-        // The largest distance of a member of one arm from the closest member of the other.
-        let excess = |arm: usize, other: usize| {
-            let closest =
-                |far: &Errors| members(arm).map(|own| own.distance(far)).fold(f64::INFINITY, f64::min);
-            members(other).map(closest).fold(0.0, f64::max)
-        };
-        let is_same = |arm: usize, other: usize| {
-            let error = members(arm).map(|own| own.error).fold(0.0, f64::max);
-            let apart = excess(arm, other).max(excess(other, arm));
-            apart <= (EQUAL_ERROR - 1.0) * (error - measure.uncertainty)
-        };
+        let count = self.manifest.arms.iter().map(|arm| arm.role.level + 1).max().unwrap_or(0);
         let level = |level: usize| {
             let sound = self
                 .arms()
                 .filter(|(i, arm)| arm.role.level == level && !apart.iter().any(|apart| apart.arm == *i));
-            let ranked = sound.filter_map(|(arm, _)| self.ranked(arm, &runs, measure.uncertainty));
-            self.placed(ranked.collect(), &is_better)
+            let ranked = sound.filter_map(|(arm, _)| self.ranked(arm, &measured));
+            self.placed(ranked.collect(), &measured)
         };
         let levels: Vec<Vec<Ranked>> = (0..count).map(level).collect();
-        let is_repeated = |r: &Ranked| manifest.runs_of(r.arm).len() > 1;
-        let field = Field {
-            goal,
-            manifest,
-            measure: &measure,
-            apart: &apart,
-            is_twin: &|a, b| rows[a].is_twin(&rows[b]),
-            is_better: &is_better,
-            is_same: &is_same,
-            is_repeated: levels.iter().flatten().all(is_repeated),
-            ranked: levels.iter().flatten().collect(),
-        };
-        let verdict = recommended(&field);
-        Ranking { goal, measure: Ok(measure), levels, apart, verdict }
+        let ranked = levels.iter().flatten().collect();
+        let verdict =
+            recommended(&Field { goal, rows: self.rows, measured: &measured, apart: &apart, ranked });
+        Ranking { goal, measure: Ok(measured.measure), levels, apart, verdict }
     }
 
     /// The arms that are compared with the reference, with their numbers.
@@ -158,8 +115,9 @@ impl Ranks<'_> {
         arms.filter(move |(_, arm)| !arm.role.fine && reference != Some(&arm.name))
     }
 
-    fn ranked(&self, arm: usize, runs: &[Option<Errors>], uncertainty: f64) -> Option<Ranked> {
-        let members = self.manifest.runs_of(arm).into_iter().map(|run| runs[run].as_ref());
+    fn ranked(&self, arm: usize, measured: &Measured) -> Option<Ranked> {
+        let uncertainty = measured.measure.uncertainty;
+        let members = self.manifest.runs_of(arm).into_iter().map(|run| measured.runs[run].as_ref());
         let members: Vec<&Errors> = members.collect::<Option<_>>()?;
         let error = members.iter().map(|member| member.error).fold(0.0, f64::max);
         let noise = members.iter().filter_map(|member| member.noise).reduce(f64::max);
@@ -169,10 +127,10 @@ impl Ranks<'_> {
     }
 
     /// Gives the arms of a level their places, and sorts them.
-    fn placed(&self, mut ranked: Vec<Ranked>, is_better: &dyn Fn(usize, usize) -> bool) -> Vec<Ranked> {
+    fn placed(&self, mut ranked: Vec<Ranked>, measured: &Measured) -> Vec<Ranked> {
         let better = |i: usize| {
             let mut ahead: Vec<usize> = Vec::new();
-            for other in ranked.iter().filter(|other| is_better(other.arm, ranked[i].arm)) {
+            for other in ranked.iter().filter(|other| measured.is_better(other.arm, ranked[i].arm)) {
                 if !ahead.iter().any(|arm| self.rows[*arm].is_twin(&self.rows[other.arm])) {
                     ahead.push(other.arm);
                 }

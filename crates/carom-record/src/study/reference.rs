@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 
 use carom_formula::Formula;
 
-use super::convergence::converged;
+use super::convergence::{converged, converged_by};
 use super::digits::short;
 use super::ensemble::Spread;
 use super::groups::groups;
@@ -51,28 +51,13 @@ const INSTANTS: [(&str, f64); 5] = [
     ("apex_time", 1.0),
 ];
 
-/// A reference value, or why there is none.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Standing {
-    /// The reference establishes a value.
-    Established {
-        /// The value.
-        value: f64,
-        /// Uncertainty of the value, in the same unit.
-        uncertainty: f64,
-    },
-    /// The reference establishes no value, for this reason.
-    Not(String),
-}
-
-impl Standing {
-    /// Value and uncertainty.
-    pub fn established(&self) -> Option<(f64, f64)> {
-        match self {
-            Self::Established { value, uncertainty } => Some((*value, *uncertainty)),
-            Self::Not(_) => None,
-        }
-    }
+/// A value that a reference establishes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Established {
+    /// The value.
+    pub value: f64,
+    /// Uncertainty of the value, in the same unit.
+    pub uncertainty: f64,
 }
 
 /// A value from refinement, with what its uncertainty consists of.
@@ -93,13 +78,13 @@ pub struct Estimate {
 pub struct Reference {
     /// Description in words.
     pub what: String,
-    runs: Levels,
+    pub(super) runs: Levels,
     /// Metrics of the finest run after averaging over a short time.
     pub averaged: Vec<Metric>,
     /// Groups of columns in which arms are compared.
     pub known: Vec<Known>,
     /// Uncertainties by column, which take the whole record to compute.
-    uncertainties: BTreeMap<String, Standing>,
+    uncertainties: BTreeMap<String, Result<f64, Reason>>,
 }
 
 impl Reference {
@@ -113,16 +98,6 @@ impl Reference {
         reference
     }
 
-    /// Sets the description, and the metrics of the finest run after averaging over a short time.
-    pub(super) fn described(self, what: String, averaged: Vec<Metric>) -> Self {
-        Self { what, averaged, ..self }
-    }
-
-    /// Sets the runs of another scheme and of twice the step on the finest mesh.
-    pub(super) fn checked(self, checks: Vec<Trajectory>) -> Self {
-        Self { runs: Levels { checks, ..self.runs }, ..self }
-    }
-
     /// Determines the groups of columns in which arms are compared; `bodies`: those of the probes;
     /// `window`: the time to average over.
     pub fn grouped(mut self, bodies: &BTreeMap<String, String>, window: &Result<f64, Reason>) -> Self {
@@ -130,11 +105,6 @@ impl Reference {
         let found = groups(finest, bodies).into_iter();
         self.known = found.filter_map(|group| Known::of(group, &self.runs, window)).collect();
         self
-    }
-
-    /// Levels of refinement, the finest last.
-    pub(super) fn levels(&self) -> &[Level] {
-        &self.runs.all
     }
 
     /// Whether the uncertainty includes that of the mesh: the reference is exact, or its mesh was
@@ -177,7 +147,7 @@ impl Reference {
         let what = "the exact formulas of [exact]".to_owned();
         let levels = vec![Level::single(1.0, sampled)];
         let runs = Levels { all: levels, checks: Vec::new(), exact: true };
-        Some(Self { uncertainties: BTreeMap::new(), runs, ..Self::of_levels(what, Vec::new()) })
+        Some(Self { runs, ..Self::of_levels(what, Vec::new()) })
     }
 
     /// Value of a metric with its uncertainty.
@@ -194,7 +164,7 @@ impl Reference {
         let levels: Option<Vec<Spread>> = self.runs.all.iter().map(of).collect();
         let levels = levels.ok_or("a run of the reference has no value")?;
         let medians: Vec<f64> = levels.iter().map(Spread::median).collect();
-        let found = converged(&self.runs.sizes(), &medians).ok_or("a single run gives no error estimate")?;
+        let found = converged(&self.runs.sizes(), &medians)?;
         let refined = self.refined_members(name).map_or(found.uncertainty, |of_members| of_members.median());
         let single = self.runs.all.last().and_then(|level| level.members.first()?.value(name));
         let checks = self.runs.checks.iter().filter_map(|run| Some((run.value(name)? - single?).abs()));
@@ -230,25 +200,25 @@ impl Reference {
         let members = 0..self.runs.all.last()?.members.len();
         let of = |k: usize| {
             let values = self.runs.all.iter().map(|level| level.members.get(k)?.value(name));
-            Some(converged(&sizes, &values.collect::<Option<Vec<f64>>>()?)?.uncertainty)
+            Some(converged(&sizes, &values.collect::<Option<Vec<f64>>>()?).ok()?.uncertainty)
         };
         Spread::of(members.map(of).collect::<Option<Vec<f64>>>()?)
     }
 
     /// Reference value of a metric.
-    pub fn metric(&self, name: &str) -> Standing {
-        match self.estimate(name) {
-            Err(why) => Standing::Not(why.into()),
-            Ok(_) if !self.refines_mesh() => Standing::Not(ONE_MESH.to_owned()),
-            Ok(Estimate { value, uncertainty, .. }) if uncertainty <= RESOLVED * value.abs() => {
-                Standing::Established { value, uncertainty }
-            }
-            Ok(Estimate { value, uncertainty, .. }) => Standing::Not(format!(
-                "its uncertainty, {}, is more than half of its value, {}",
-                short(uncertainty),
-                short(value)
-            )),
+    ///
+    /// # Errors
+    /// The reason why the reference establishes none.
+    pub fn metric(&self, name: &str) -> Result<Established, Reason> {
+        let Estimate { value, uncertainty, .. } = self.estimate(name)?;
+        if !self.refines_mesh() {
+            return Err(ONE_MESH.into());
         }
+        if uncertainty <= RESOLVED * value.abs() {
+            return Ok(Established { value, uncertainty });
+        }
+        let off = short(uncertainty);
+        Err(format!("its uncertainty, {off}, is more than half of its value, {}", short(value)).into())
     }
 
     /// Times and values of a column.
@@ -279,37 +249,29 @@ impl Reference {
     }
 
     /// Uncertainty of a column, relative to its range: root mean square over its rows.
-    pub fn uncertainty(&self, column: &str) -> Standing {
+    ///
+    /// # Errors
+    /// The reason why the reference does not establish the column.
+    pub fn uncertainty(&self, column: &str) -> Result<f64, Reason> {
         if self.runs.exact {
-            return Standing::Established { value: 0.0, uncertainty: 0.0 };
+            return Ok(0.0);
         }
         self.uncertainties.get(column).cloned().unwrap_or_else(|| self.of_column(column))
     }
 
-    fn of_column(&self, column: &str) -> Standing {
-        let Some((apart, spread)) = self.deviations(column) else {
-            return Standing::Not("a run of the reference has no such column".to_owned());
-        };
-        // Values whose differences are these deviations.
-        let mut values = vec![0.0];
-        for deviation in apart.iter().rev() {
-            values.push(values[values.len() - 1] + deviation);
-        }
-        values.reverse();
-        let Some(found) = converged(&self.runs.sizes(), &values) else {
-            return Standing::Not("a single run gives no error estimate".to_owned());
-        };
-        let uncertainty = found.uncertainty + spread;
+    fn of_column(&self, column: &str) -> Result<f64, Reason> {
+        let found = self.deviations(column);
+        let (between, spread) = found.ok_or("a run of the reference has no such column")?;
+        let refined = converged_by(&self.runs.sizes(), between.into_iter())?;
         if !self.refines_mesh() {
-            Standing::Not(ONE_MESH.to_owned())
-        } else if uncertainty <= RESOLVED {
-            Standing::Established { value: 0.0, uncertainty }
-        } else {
-            Standing::Not(format!(
-                "its uncertainty, {} of its range, is more than half of it",
-                short(uncertainty)
-            ))
+            return Err(ONE_MESH.into());
         }
+        let uncertainty = refined.uncertainty + spread;
+        if uncertainty <= RESOLVED {
+            return Ok(uncertainty);
+        }
+        let off = short(uncertainty);
+        Err(format!("its uncertainty, {off} of its range, is more than half of it").into())
     }
 
     /// Uncertainty of a column at the times of the reference: the difference of the two finest
@@ -319,8 +281,8 @@ impl Reference {
         let before = self.runs.all.len().checked_sub(2).and_then(|i| self.runs.all[i].members.first());
         let other = before.and_then(|run| Some((&run.times, run.columns.get(column)?)));
         let last = self.deviations(column).and_then(|(apart, _)| apart.last().copied());
-        let scale = match (self.uncertainty(column).established(), last) {
-            (Some((_, uncertainty)), Some(last)) if last > 0.0 => uncertainty / last,
+        let scale = match (self.uncertainty(column), last) {
+            (Ok(uncertainty), Some(last)) if last > 0.0 => uncertainty / last,
             _ => 1.0,
         };
         let off = |(t, v): (&f64, &f64)| {

@@ -135,21 +135,23 @@ impl StudyManifest {
             };
             checks.push(self.trajectory(&run, striker.as_deref()));
         }
-        let reference = Reference::of_levels(String::new(), levels).checked(checks);
-        let reference = reference.grouped(&self.bodies_of_probes(), &window);
+        let mut reference = Reference::of_levels(String::new(), levels);
+        reference.runs.checks = checks;
+        reference.averaged = averaged;
+        let mut reference = reference.grouped(&self.bodies_of_probes(), &window);
         let count = match arms.len() {
             1 => "a single run, whose error is not known".to_owned(),
             n if reference.refines_mesh() => format!("the finest of {n} levels of step and mesh"),
             n => format!("the finest of {n} steps on the given mesh"),
         };
-        let members = || reference.levels().iter().map(|level| level.members.len());
+        let members = || reference.runs.all.iter().map(|level| level.members.len());
         let ensemble = match (members().min().unwrap_or(1), members().max().unwrap_or(1)) {
             (1, 1) => String::new(),
             (least, most) if least == most => format!(", {most} members each"),
             (least, most) => format!(", {least} to {most} members each"),
         };
         let law = begins(&self.arms[*last]);
-        let what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
-        Ok(Some(reference.described(what, averaged)))
+        reference.what = format!("\"{}\", {count}{ensemble}{law}", self.arms[*last].name);
+        Ok(Some(reference))
     }
 }

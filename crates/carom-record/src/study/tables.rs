@@ -6,7 +6,6 @@ use serde::Serialize;
 use super::arm::step;
 use super::ensemble::Spread;
 use super::ranking::{Confidence, Ranking};
-use super::reference::Standing;
 use super::{Row, Study, Verdict};
 use crate::files::write_unsynced;
 use crate::metrics::Metric;
@@ -48,8 +47,10 @@ impl Study {
             (&row.name, word(row), &row.reason, values)
         });
         table::write(&self.directory.join("study.csv"), &header, wide)?;
-        let of_row = |row| row_metrics(row).map(move |m| (&row.name, &m.name, m.value, &m.unit));
-        let tidy = self.rows.iter().flat_map(of_row);
+        let tidy = self
+            .rows
+            .iter()
+            .flat_map(|row| row.metrics.iter().map(move |m| (&row.name, &m.name, m.value, &m.unit)));
         table::write(&self.directory.join("study_tidy.csv"), &["arm", "metric", "value", "unit"], tidy)
     }
 
@@ -76,13 +77,16 @@ impl Study {
             let ratio = confirmed.and_then(|confirmed| confirmed.ratio.as_ref());
             let bound = v.bound.map_or_else(String::new, |(sign, bound)| format!("{sign} {bound}"));
             (
-                (v.claim.text.clone(), v.claim.compare.clone(), v.left, v.right, v.word()),
-                (confirmed.map(|confirmed| confirmed.count), confirmed.map(|confirmed| confirmed.of)),
-                (
-                    ratio.map(Spread::median).or(v.ratio),
-                    ratio.map(|r| r.range().0),
-                    ratio.map(|r| r.range().1),
-                ),
+                v.claim.text.clone(),
+                v.claim.compare.clone(),
+                v.left,
+                v.right,
+                v.word(),
+                confirmed.map(|confirmed| confirmed.count),
+                confirmed.map(|confirmed| confirmed.of),
+                ratio.map(Spread::median).or(v.ratio),
+                ratio.map(|ratio| ratio.range().0),
+                ratio.map(|ratio| ratio.range().1),
                 bound,
             )
         };
@@ -96,7 +100,7 @@ impl Study {
         }
         let header = ["arm", "metric", "unit", "members", "median", "low", "high"];
         let lines = self.rows.iter().enumerate().flat_map(|(arm, row)| {
-            row_metrics(row).filter_map(move |m| {
+            row.metrics.iter().filter_map(move |m| {
                 let spread = self.spread(arm, &m.name)?;
                 Some((&row.name, &m.name, &m.unit, spread.count(), spread.median(), spread.range()))
             })
@@ -122,16 +126,18 @@ impl Study {
         let refined = if reference.refines_mesh() { "mesh and step" } else { "step only" };
         let line = |m: &Metric| {
             let estimate = reference.estimate(&m.name).ok();
-            let known = match self.standing(&m.name) {
-                Standing::Established { value, uncertainty } => ("yes", Some(value), Some(uncertainty), None),
-                Standing::Not(why) => {
-                    ("no", estimate.map(|e| e.value), estimate.map(|e| e.uncertainty), Some(why))
-                }
-            };
-            let (is_established, value, uncertainty, why) = known;
+            let standing = self.standing(&m.name);
+            let known = standing.as_ref().ok();
             (
-                (m.name.clone(), m.unit.clone(), is_established, value, uncertainty),
-                (estimate.and_then(|e| e.order), estimate.map(|e| e.spread), why, refined),
+                m.name.clone(),
+                m.unit.clone(),
+                if known.is_some() { "yes" } else { "no" },
+                known.map(|known| known.value).or(estimate.map(|e| e.value)),
+                known.map(|known| known.uncertainty).or(estimate.map(|e| e.uncertainty)),
+                estimate.and_then(|e| e.order),
+                estimate.map(|e| e.spread),
+                standing.as_ref().err().map(ToString::to_string),
+                refined,
             )
         };
         let metrics = self.metrics().into_iter().filter(|m| !m.is_work());
@@ -163,7 +169,7 @@ impl Study {
         });
         let lines = ranked.map(|(goal, level, r)| {
             let arm = &self.manifest.arms[r.arm];
-            let named = (goal.word(), level, r.place, &arm.name, arm.role.method.as_deref());
+            let named = (goal.word(), level, r.place, &arm.name, &arm.role.method);
             (named, step(arm, "time.step"), r.error, r.interval, r.noise, r.cost)
         });
         table::write(&self.directory.join("ranking.csv"), &header, lines)?;
@@ -211,8 +217,4 @@ struct Stated<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     off_budget: Vec<(&'a str, Option<f64>)>,
     apart: Vec<(&'a str, &'a str)>,
-}
-
-fn row_metrics(row: &Row) -> impl Iterator<Item = &Metric> {
-    row.metrics.iter()
 }

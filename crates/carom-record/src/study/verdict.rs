@@ -11,14 +11,14 @@ use serde::Serialize;
 
 use super::design::Goal;
 use super::digits::short;
-use super::manifest::StudyManifest;
-use super::measure::Measure;
+use super::measure::Measured;
 use super::ranked::{Apart, Ranked};
+use super::row::Row;
 
 /// Factor within which counted costs are equal.
 const EQUAL_COST: f64 = 1.1;
 /// Factor within which errors are equal.
-pub(super) const EQUAL_ERROR: f64 = 1.05;
+const EQUAL_ERROR: f64 = 1.05;
 /// Factor by which an error is clearly smaller than that of another arm.
 const CLEAR: f64 = 1.5;
 
@@ -65,23 +65,15 @@ pub struct Verdict {
 /// The ranked arms of a study, of all levels.
 pub(super) struct Field<'a> {
     pub(super) goal: Goal,
-    pub(super) manifest: &'a StudyManifest,
-    pub(super) measure: &'a Measure,
+    pub(super) rows: &'a [Row],
+    pub(super) measured: &'a Measured<'a>,
     pub(super) apart: &'a [Apart],
-    /// Whether two arms have the same results.
-    pub(super) is_twin: &'a dyn Fn(usize, usize) -> bool,
-    /// Whether the first of two arms is distinguishably better.
-    pub(super) is_better: &'a dyn Fn(usize, usize) -> bool,
-    /// Whether the errors of two arms are equal, whatever the solution.
-    pub(super) is_same: &'a dyn Fn(usize, usize) -> bool,
-    /// Whether every arm has several members.
-    pub(super) is_repeated: bool,
     pub(super) ranked: Vec<&'a Ranked>,
 }
 
 impl<'a> Field<'a> {
     fn name(&self, ranked: &Ranked) -> &'a str {
-        &self.manifest.arms[ranked.arm].name
+        &self.measured.manifest.arms[ranked.arm].name
     }
 
     /// The arm with the least value, of equal ones the first by name.
@@ -91,7 +83,8 @@ impl<'a> Field<'a> {
 
     /// The accuracy that an arm must have, if one is required.
     fn required(&self) -> Option<f64> {
-        if self.goal == Goal::Cost { Some(self.manifest.accuracy()) } else { self.manifest.accuracy }
+        let manifest = self.measured.manifest;
+        if self.goal == Goal::Cost { Some(manifest.accuracy()) } else { manifest.accuracy }
     }
 
     /// Whether no arm has a smaller error at no more cost.
@@ -105,9 +98,9 @@ impl<'a> Field<'a> {
 
     /// Arms of other methods that cost no more than an arm, up to what counts as equal.
     fn rivals(&self, chosen: &'a Ranked) -> impl Iterator<Item = &'a Ranked> {
-        let method = |ranked: &Ranked| self.manifest.arms[ranked.arm].method();
+        let method = |ranked: &Ranked| self.measured.manifest.arms[ranked.arm].method();
         let is_rival = move |r: &Ranked| {
-            let is_other = method(r) != method(chosen) && !(self.is_twin)(r.arm, chosen.arm);
+            let is_other = method(r) != method(chosen) && !self.rows[r.arm].is_twin(&self.rows[chosen.arm]);
             is_other && r.cost <= EQUAL_COST * chosen.cost
         };
         self.ranked.iter().copied().filter(move |r| is_rival(r))
@@ -124,8 +117,9 @@ fn known(ranked: &Ranked) -> String {
 pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let all = || field.ranked.iter().copied();
     let Some(best) = field.least(all(), |r| r.error) else {
-        let apart = |apart: &Apart| format!("{}: {}", field.manifest.arms[apart.arm].name, apart.why);
-        let nothing = format!("no arm has a value for: {}", field.measure.words);
+        let apart =
+            |apart: &Apart| format!("{}: {}", field.measured.manifest.arms[apart.arm].name, apart.why);
+        let nothing = format!("no arm has a value for: {}", field.measured.measure.words);
         return Err(std::iter::once(nothing).chain(field.apart.iter().map(apart)).collect());
     };
     let required = field.required();
@@ -133,7 +127,7 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
         if let Some(accuracy) = required {
             return r.interval[1] <= accuracy;
         }
-        let is_alike = r.error <= CLEAR * best.error && !(field.is_better)(best.arm, r.arm);
+        let is_alike = r.error <= CLEAR * best.error && !field.measured.is_better(best.arm, r.arm);
         is_alike || r.error <= EQUAL_ERROR * best.error
     };
     let candidates = || all().filter(|r| is_accurate(r) && field.is_on_front(r));
@@ -150,7 +144,7 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let chosen = field.least(affordable, |r| r.error).unwrap_or(cheapest);
     let mut alike: Vec<&str> = field
         .rivals(chosen)
-        .filter(|r| !(field.is_better)(chosen.arm, r.arm) || r.error <= EQUAL_ERROR * chosen.error)
+        .filter(|r| !field.measured.is_better(chosen.arm, r.arm) || r.error <= EQUAL_ERROR * chosen.error)
         .filter(|r| required.is_none() || is_accurate(r))
         .map(|r| field.name(r))
         .collect();
@@ -166,7 +160,7 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
 }
 
 fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
-    let mut reasons = vec![format!("{}: {}", field.measure.words, known(chosen))];
+    let mut reasons = vec![format!("{}: {}", field.measured.measure.words, known(chosen))];
     reasons.push(match field.required() {
         Some(accuracy) => {
             format!("smallest error of the arms within 10 % of the lowest cost, of those with an error of at most {accuracy}, its uncertainty included")
@@ -179,8 +173,8 @@ fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
         ),
     });
     reasons.push("no arm has a smaller error at no more cost".to_owned());
-    if !field.measure.left_out.is_empty() {
-        let left_out = field.measure.left_out.join("; ");
+    if !field.measured.measure.left_out.is_empty() {
+        let left_out = field.measured.measure.left_out.join("; ");
         reasons.push(format!("not established by the reference, and left out: {left_out}"));
     }
     reasons
@@ -197,7 +191,10 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
     if field.rivals(chosen).next().is_none() {
         at_most(Confidence::Medium, "no other method was run at this cost".to_owned());
     }
-    let is_settled = |r: &Ranked| (field.is_better)(chosen.arm, r.arm) || (field.is_same)(chosen.arm, r.arm);
+    let is_settled = |r: &Ranked| {
+        let is_same = || field.measured.is_within(EQUAL_ERROR - 1.0, chosen.arm, r.arm);
+        field.measured.is_better(chosen.arm, r.arm) || is_same()
+    };
     let open = field.rivals(chosen).filter(|r| !is_settled(r));
     if let Some(next) = field.least(open, |r| r.error) {
         at_most(Confidence::Low, format!("not distinguished from {}: {}", field.name(next), known(next)));
@@ -211,7 +208,8 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
             at_most(Confidence::Medium, why);
         }
     }
-    if !field.is_repeated {
+    let runs_of = |ranked: &Ranked| field.measured.manifest.runs_of(ranked.arm);
+    if field.ranked.iter().any(|ranked| runs_of(ranked).len() == 1) {
         let why = "there are arms with the value of a single run, so that chance cannot be distinguished from the \
                    method; [ensemble] runs every arm with several phases, roles and meshes";
         at_most(Confidence::Medium, why.to_owned());

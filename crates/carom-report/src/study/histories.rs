@@ -43,7 +43,7 @@ fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Ba
     let low = |i: &usize| around(*i).map(|k| y[k] - off[k]).fold(f64::INFINITY, f64::min);
     let high = |i: &usize| around(*i).map(|k| y[k] + off[k]).fold(f64::NEG_INFINITY, f64::max);
     let x: Vec<f64> = rows.iter().map(|i| x[*i]).collect();
-    let is_known = reference.uncertainty(column).established().is_some();
+    let is_known = reference.uncertainty(column).is_ok();
     let band = is_known.then(|| Band {
         name: "uncertainty",
         x: x.clone(),

@@ -2,7 +2,7 @@
 
 use carom_record::metrics::Metric;
 use carom_record::study::ranking::Ranking;
-use carom_record::study::reference::{Reference, Standing};
+use carom_record::study::reference::{Established, Reference};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
@@ -199,7 +199,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                     tr {
                         td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
                         @match study.standing(&metric.name) {
-                            Standing::Established { value, uncertainty } => {
+                            Ok(Established { value, uncertainty }) => {
                                 @let estimate = reference.estimate(&metric.name).ok();
                                 @let order = estimate.and_then(|estimate| estimate.order).filter(|_| uncertainty > 0.0);
                                 td.n { (Label(&three(value))) }
@@ -207,7 +207,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                                 td.n { (or_dash(order, |p| if p > HIGHEST { format!("({p:.2})") } else { format!("{p:.2}") })) }
                                 td.n { (labelled(estimate.map(|estimate| estimate.spread).filter(|s| *s > 0.0), three)) }
                             }
-                            Standing::Not(why) => td colspan="4" { "not established: " (typeset(&why)) },
+                            Err(why) => td colspan="4" { "not established: " (typeset(&why)) },
                         }
                     }
                 }

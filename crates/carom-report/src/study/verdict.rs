@@ -1,7 +1,7 @@
 //! The recommendation of a study: the setting, its reasons, its cost and its side effects.
 
 use carom_record::study::ranking::error;
-use carom_record::study::reference::Standing;
+use carom_record::study::reference::Established;
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
@@ -108,8 +108,7 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
     let percent = |share: f64| format!("{} %", three(100.0 * share));
     let mut lines = Vec::new();
     for (metric, words) in SIDE_EFFECTS {
-        let known = study.standing(metric);
-        let Standing::Established { value: right, uncertainty } = known else { continue };
+        let Ok(Established { value: right, uncertainty }) = study.standing(metric) else { continue };
         let is_energy = metric.starts_with("energy") || metric.starts_with("dissipated");
         // A relative error needs a nonzero reference; energies are fractions already.
         if right == 0.0 && !is_energy {
@@ -134,7 +133,7 @@ fn side_effects(study: &Study, arm: usize) -> Vec<String> {
     }
     let late = study.compared.get(arm).and_then(|compared| compared.as_ref()?.late.as_ref());
     if let Some((column, late)) = late {
-        let known = study.standing("contact_start").established().map_or(0.0, |known| known.1);
+        let known = study.standing("contact_start").map_or(0.0, |known| known.uncertainty);
         let direction = if *late < 0.0 { "leads" } else { "lags" };
         let amount = if late.abs() < known {
             format!("less than the uncertainty of its instants, {}", three(known))

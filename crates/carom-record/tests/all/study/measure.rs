@@ -3,6 +3,7 @@
 use carom_record::metrics::Metric;
 use carom_record::study::Row;
 use carom_record::study::measure::{error, standing};
+use carom_record::study::reference::Established;
 
 #[test]
 fn errors_are_relative_unless_the_reference_is_zero() {
@@ -16,7 +17,7 @@ fn friction_takes_energy() {
         metrics: vec![Metric { name: name.into(), value: Some(0.1), unit: String::new(), definition: "" }],
         ..Row::default()
     };
-    let is_zero = |name: &str, row: Row| standing(None, &[row], name).established() == Some((0.0, 0.0));
+    let is_zero = |name: &str, row: Row| standing(None, &[row], name) == Ok(Established::default());
     assert!(is_zero("energy_lost", with("restitution")) && is_zero("energy_error", with("friction_lost")));
     assert!(!is_zero("energy_lost", with("friction_lost")) && !is_zero("energy_drift", with("plastic_lost")));
 }
