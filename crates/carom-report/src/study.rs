@@ -59,7 +59,7 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     })?;
     study.write_tables()?;
     systems.convert(&mut study);
-    let mut plots: Vec<Plot> = comparison::plots(&study);
+    let mut plots: Vec<Plot> = comparison::plot(&study).into_iter().collect();
     plots.extend(histories::plots(&study, &columns, &measured, &time));
     plots.extend(trend::plots(&study));
     plots.extend(theory::plot(&study).filter(|_| study.manifest.goal.is_some()));

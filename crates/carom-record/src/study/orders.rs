@@ -21,8 +21,9 @@ use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
 /// Arms that differ in one key, the coarsest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refinement {
-    /// The changes they have in common.
-    pub common: String,
+    /// The changes they have in common, after the case if it is not that of the study; or the text
+    /// that their names contain.
+    pub common: Vec<String>,
     /// Numbers of the arms.
     pub arms: Vec<usize>,
     /// Their steps: the value of the key, or 1/value of a count.
@@ -62,7 +63,8 @@ fn groups(
         else {
             continue;
         };
-        let common = name.map_or_else(|| others(arm, key).collect::<Vec<_>>().join(", "), str::to_owned);
+        let common =
+            name.map_or_else(|| others(arm, key).map(str::to_owned).collect(), |name| vec![name.to_owned()]);
         match groups.iter_mut().find(|g| g.common == common) {
             Some(group) => {
                 let at = group.steps.partition_point(|s| *s > step);
@@ -175,7 +177,7 @@ pub(super) fn judge(
     }
     let verdict = |group: &&Refinement| {
         let got = observed(expect, order, group, manifest, records, reference);
-        Expectation { what: words(&group.common), ..expect.verdict(got) }
+        Expectation { what: words(&group.common.join(", ")), ..expect.verdict(got) }
     };
     enough.iter().map(verdict).collect()
 }

@@ -48,7 +48,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
             summary {
                 "Refinement of " code { (key) }
                 @if let Some(counted) = count(key) { " (step: 1/" (counted) ")" }
-                @if !common.is_empty() { ", " code { (common) } }
+                @if !common.is_empty() { ", " code { (common.join(", ")) } }
             }
             table.metrics {
                 thead {

@@ -1,7 +1,9 @@
 //! The ranking of the arms of a study and what it rests on: reference values, and the other goals.
 
+use std::collections::BTreeMap;
+
 use carom_record::metrics::Metric;
-use carom_record::study::ranking::Ranking;
+use carom_record::study::ranking::{Ranked, Ranking};
 use carom_record::study::reference::{Established, Reference};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
@@ -43,45 +45,43 @@ pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
     }
 }
 
-/// A heading, and the cell of an arm.
-type Column<'a> = (String, Box<dyn Fn(usize) -> Option<String> + 'a>);
+/// A heading, and the cells of the arms that have one.
+type Column = (String, BTreeMap<usize, String>);
 
 /// The columns that have a value in any of the arms.
-fn columns<'a>(study: &'a Study, ranking: &'a Ranking) -> Vec<Column<'a>> {
-    let value = |arm: usize, metric: &str| study.rows[arm].value(metric);
-    let unit = |metric: &str| study.metrics().into_iter().find(|m| m.name == metric).map(|m| m.unit.clone());
-    let of_arm = |arm: usize| ranking.levels.iter().flatten().find(|ranked| ranked.arm == arm);
-    let error = move |arm: usize| Some(three(of_arm(arm)?.error));
-    let interval = move |arm: usize| {
-        let [low, high] = of_arm(arm)?.interval;
-        Some(format!("{} to {}", three(low), three(high)))
+fn columns(study: &Study, ranking: &Ranking) -> Vec<Column> {
+    let column = |head: String, cell: &dyn Fn(&Ranked) -> Option<String>| {
+        let ranked = ranking.levels.iter().flatten();
+        (head, ranked.filter_map(|ranked| Some((ranked.arm, cell(ranked)?))).collect())
     };
-    let noise = move |arm: usize| of_arm(arm)?.noise.map(three);
-    let step_of = |arm: usize| {
-        let arm = &study.manifest.arms[arm];
+    let metrics = study.metrics();
+    let metric = |head: &str, name: &str, digits: fn(f64) -> String| {
+        let unit = metrics.iter().find(|metric| metric.name == name).map_or("", |metric| &metric.unit);
+        column(with_unit(head, unit), &|ranked| study.rows[ranked.arm].value(name).map(digits))
+    };
+    let step_of = |ranked: &Ranked| {
+        let arm = &study.manifest.arms[ranked.arm];
         let budget = if study.manifest.is_off_budget(arm) { " !" } else { "" };
         Some(step(arm, "time.step").map(five)? + budget)
     };
-    let late = |arm: usize| Some(three(study.compared.get(arm)?.as_ref()?.late.as_ref()?.1));
-    let mut all: Vec<Column> = vec![
-        (with_unit("Δt", time_unit(study)), Box::new(step_of)),
-        ("Error".to_owned(), Box::new(error)),
-        ("Interval".to_owned(), Box::new(interval)),
-        ("Noise".to_owned(), Box::new(noise)),
-        (with_unit("Delay", time_unit(study)), Box::new(late)),
+    let interval = |ranked: &Ranked| {
+        let [low, high] = ranked.interval.map(three);
+        Some(format!("{low} to {high}"))
+    };
+    let late = |ranked: &Ranked| Some(three(study.compared.get(ranked.arm)?.as_ref()?.late.as_ref()?.1));
+    let mut all = vec![
+        column(with_unit("Δt", time_unit(study)), &step_of),
+        column("Error".to_owned(), &|ranked| Some(three(ranked.error))),
+        column("Interval".to_owned(), &interval),
+        column("Noise".to_owned(), &|ranked| ranked.noise.map(three)),
+        column(with_unit("Delay", time_unit(study)), &late),
+        metric("Cost", "cost", count),
+        metric("Newton iterations", "newton_iterations", count),
+        metric("Energy error", "energy_error", three),
+        metric("Energy lost", "energy_lost", three),
+        metric("Penetration", "penetration", three),
     ];
-    for (head, metric) in [("Cost", "cost"), ("Newton iterations", "newton_iterations")] {
-        let head = with_unit(head, &unit(metric).unwrap_or_default());
-        all.push((head, Box::new(move |arm| value(arm, metric).map(count))));
-    }
-    for (head, metric) in
-        [("Energy error", "energy_error"), ("Energy lost", "energy_lost"), ("Penetration", "penetration")]
-    {
-        let head = with_unit(head, &unit(metric).unwrap_or_default());
-        all.push((head, Box::new(move |arm| value(arm, metric).map(three))));
-    }
-    let arms: Vec<usize> = ranking.levels.iter().flatten().map(|ranked| ranked.arm).collect();
-    all.retain(|(_, cell)| arms.iter().any(|arm| cell(*arm).is_some()));
+    all.retain(|(_, cells): &Column| !cells.is_empty());
     all
 }
 
@@ -122,7 +122,7 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
                                     span.small { " (identical to " (Label(study.manifest.arms[first].method())) ")" }
                                 }
                             }
-                            @for (_, cell) in &columns { td.n { (Label(cell(r.arm).as_deref().unwrap_or("–"))) } }
+                            @for (_, cells) in &columns { td.n { (Label(cells.get(&r.arm).map_or("–", String::as_str))) } }
                         }
                     }
                 }

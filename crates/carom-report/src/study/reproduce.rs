@@ -1,7 +1,6 @@
 //! How to reproduce and cite a study: input, hashes of the records, and the arm that was
 //! recomputed.
 
-use carom_record::Status;
 use carom_record::study::Study;
 use maud::{Markup, html};
 
@@ -71,22 +70,18 @@ pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
 }
 
 fn hashes(study: &Study, origins: &[Origin]) -> Markup {
-    let ended = |origin: &Origin| match study.rows[origin.arm].status {
-        Some(Status::Finished) => "finished",
-        _ => "not finished",
-    };
     html! {
         div {
             table.metrics.ranking {
                 thead {
                     tr {
-                        th { "Arm" } th { "Status" } th.n { "Rejected steps" } th.n { "Cycles and fallbacks" }
+                        th { "Arm" } th.n { "Rejected steps" } th.n { "Cycles and fallbacks" }
                         th { "Input hash" } th { "Record hash" }
                     }
                 }
                 @for origin in origins {
                     tr {
-                        td { (study.rows[origin.arm].name) } td { (ended(origin)) }
+                        td { (study.rows[origin.arm].name) }
                         td.n { (origin.rejected) } td.n { (origin.fallbacks) }
                         td { code { (short(&origin.input)) } } td { code { (short(&origin.record)) } }
                     }

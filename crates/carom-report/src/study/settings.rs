@@ -23,19 +23,10 @@ fn shared(study: &Study) -> Vec<&String> {
     first.into_iter().flat_map(|(_, arm)| &arm.sets).filter(is_shared).collect()
 }
 
-/// Settings joined by commas, without those that all arms have.
-pub(super) fn own_settings(study: &Study, joined: &str) -> String {
-    // A value may contain a comma: shared settings are removed as a whole.
-    let mut own = joined.to_owned();
-    for set in shared(study) {
-        for (from, to) in [(format!(", {set}, "), ", "), (format!("{set}, "), ""), (format!(", {set}"), "")] {
-            own = own.replace(&from, to);
-        }
-        if own == *set {
-            own.clear();
-        }
-    }
-    own
+/// Those of some settings that not all arms have.
+pub(super) fn own_settings<'a>(study: &Study, settings: &'a [String]) -> Vec<&'a str> {
+    let shared = shared(study);
+    settings.iter().filter(|set| !shared.contains(set)).map(String::as_str).collect()
 }
 
 /// The section of the page.
@@ -55,16 +46,14 @@ pub(super) fn section(study: &Study, picture: Option<&Figure>) -> Markup {
         details {
             summary { "Settings of the arms" }
             @if !shared.is_empty() { p { "In all arms: " (codes(&shared, ", ")) } }
-            (table(study, &shared))
+            (table(study))
         }
         (design(study))
     }
 }
 
 /// A row for each arm with its own settings.
-fn table(study: &Study, shared: &[&String]) -> Markup {
-    let own =
-        |arm: &Arm| -> Vec<String> { arm.sets.iter().filter(|set| !shared.contains(set)).cloned().collect() };
+fn table(study: &Study) -> Markup {
     html! {
         table.stack {
             thead { tr { th.n { "No." } th { "Arm" } th { "Settings" } } }
@@ -73,7 +62,7 @@ fn table(study: &Study, shared: &[&String]) -> Markup {
                     td.n { (i + 1) } td { (arm.name) }
                     td {
                         @if let Some(path) = &arm.case_path { "case " code { (path) } br; }
-                        (codes(&own(arm), html! { br; }))
+                        (codes(&own_settings(study, &arm.sets), html! { br; }))
                     }
                 }
             }

@@ -37,6 +37,18 @@ const FIRST: [&str; 7] = [
 /// Keys whose values are times.
 const TIMES: [&str; 2] = ["time.end", "time.step"];
 
+/// A key whose numbers differ between arms, and the metrics that vary against it.
+struct Sweep<'a> {
+    key: String,
+    /// The unit of the key, where it is known.
+    unit: &'a str,
+    groups: Vec<Refinement>,
+    /// Words for the groups.
+    labels: Vec<String>,
+    /// Metrics, those of [`FIRST`] first, each with its trends in the groups.
+    metrics: Vec<(&'a Metric, Vec<Trend>)>,
+}
+
 /// A metric against a key in a group of arms.
 struct Trend {
     x: Vec<f64>,
@@ -72,22 +84,26 @@ fn is_whole_steps(study: &Study, key: &str, metric: &Metric) -> bool {
     key == "time.step" && !metric.unit.is_empty() && metric.unit == time_unit(study)
 }
 
-/// Whether a metric is fitted as a power of the key: if both span the factor in every group that
-/// can be fitted.
-fn power(study: &Study, groups: &[Refinement], metric: &str) -> bool {
-    let of = |group| points(study, group, metric);
-    groups.iter().map(of).filter(|(x, _)| x.len() >= FITTED).all(|(x, y)| spans(&x) && spans(&y))
-}
-
-fn trend(study: &Study, group: &Refinement, metric: &str, power: bool) -> Trend {
-    let (x, y) = points(study, group, metric);
-    let log = |v: &[f64]| v.iter().map(|v| v.ln()).collect::<Vec<_>>();
-    let fit = match () {
-        () if x.len() < FITTED || is_constant(&y) => None,
-        () if power => Fit::of(&log(&x), &log(&y)),
-        () => Fit::of(&x, &y),
+/// The trends of a metric in groups of arms; none if it does not vary. It is fitted as a power of
+/// the key if both span the factor in every group that can be fitted.
+fn trends(study: &Study, groups: &[Refinement], metric: &str) -> Option<Vec<Trend>> {
+    let points: Vec<_> = groups.iter().map(|group| points(study, group, metric)).collect();
+    let count: usize = points.iter().map(|(x, _)| x.len()).sum();
+    // What differs between groups only does not vary against the key.
+    if count < LEAST || points.iter().all(|(_, y)| is_constant(y)) {
+        return None;
+    }
+    let power = points.iter().filter(|(x, _)| x.len() >= FITTED).all(|(x, y)| spans(x) && spans(y));
+    let log = |values: &[f64]| values.iter().map(|value| value.ln()).collect::<Vec<_>>();
+    let trend = |(x, y): (Vec<f64>, Vec<f64>)| {
+        let fit = match () {
+            () if x.len() < FITTED || is_constant(&y) => None,
+            () if power => Fit::of(&log(&x), &log(&y)),
+            () => Fit::of(&x, &y),
+        };
+        Trend { x, y, fit, power }
     };
-    Trend { x, y, fit, power }
+    Some(points.into_iter().map(trend).collect())
 }
 
 impl Trend {
@@ -138,107 +154,104 @@ pub(super) fn rank(name: &str) -> usize {
     FIRST.iter().position(|first| *first == base).unwrap_or(FIRST.len())
 }
 
-/// Metrics that vary, those of [`FIRST`] first.
-fn metrics<'a>(study: &'a Study, key: &str, groups: &[Refinement]) -> Vec<&'a Metric> {
-    let known = |name: &str| {
-        let values: Vec<Vec<f64>> = groups.iter().map(|group| points(study, group, name).1).collect();
-        // What differs between groups only does not vary against the key.
-        values.iter().map(Vec::len).sum::<usize>() >= LEAST && values.iter().any(|own| !is_constant(own))
-    };
-    let is_shown = |m: &&Metric| !m.is_work() && known(&m.name) && !is_whole_steps(study, key, m);
-    let mut found: Vec<_> = study.metrics().into_iter().filter(is_shown).collect();
-    found.sort_by_key(|m| rank(&m.name));
-    found
-}
-
-/// The unit of a key, where it is known.
-fn unit_of_key<'a>(study: &'a Study, key: &str) -> &'a str {
-    if TIMES.contains(&key) { time_unit(study) } else { "" }
-}
-
-/// The label of a key with its unit: its last part, and its inverse for a count.
-fn axis(study: &Study, key: &str) -> String {
-    let last = key.rsplit_once('.').map_or(key, |(_, last)| last);
-    match last {
-        _ if count(key).is_some() => format!("1/{last}"),
-        _ if TIMES.contains(&key) => with_unit(last, time_unit(study)),
-        "mu" => "μ".to_owned(),
-        "rho_inf" => "ρ_{∞}".to_owned(),
-        _ => last.to_owned(),
-    }
+/// A sweep for every key.
+fn sweeps(study: &Study) -> impl Iterator<Item = Sweep<'_>> {
+    let keys = refined_keys(&study.manifest, LEAST, scalar);
+    keys.into_iter().map(|(key, groups)| Sweep::of(study, key, groups))
 }
 
 /// A figure for every key.
 pub(super) fn plots(study: &Study) -> Vec<Plot> {
-    refined_keys(&study.manifest, LEAST, scalar)
-        .iter()
-        .filter_map(|(key, groups)| plot(study, key, groups))
-        .collect()
+    sweeps(study).filter_map(|sweep| sweep.plot(study)).collect()
 }
 
-fn plot(study: &Study, key: &str, groups: &[Refinement]) -> Option<Plot> {
-    let all: Vec<f64> = groups.iter().flat_map(|group| group.steps.iter().copied()).collect();
-    let wide = spans(&all);
-    let single = groups.len() == 1;
-    let labels = labels(study, groups);
-    let pane = |metric: &&Metric| {
-        let power = power(study, groups, &metric.name);
+impl<'a> Sweep<'a> {
+    fn of(study: &'a Study, key: String, groups: Vec<Refinement>) -> Self {
+        let mut metrics = study.metrics();
+        metrics.retain(|metric| !metric.is_work() && !is_whole_steps(study, &key, metric));
+        metrics.sort_by_key(|metric| rank(&metric.name));
+        let with_trends = |metric: &'a Metric| Some((metric, trends(study, &groups, &metric.name)?));
+        Self {
+            metrics: metrics.into_iter().filter_map(with_trends).collect(),
+            unit: if TIMES.contains(&key.as_str()) { time_unit(study) } else { "" },
+            labels: labels(study, &groups),
+            key,
+            groups,
+        }
+    }
+
+    /// The label of the key with its unit: its last part, and its inverse for a count.
+    fn axis(&self) -> String {
+        match self.key.rsplit_once('.').map_or(self.key.as_str(), |(_, last)| last) {
+            last if count(&self.key).is_some() => format!("1/{last}"),
+            "mu" => "μ".to_owned(),
+            "rho_inf" => "ρ_{∞}".to_owned(),
+            last => with_unit(last, self.unit),
+        }
+    }
+
+    /// A metric in all groups; `log`: whether the horizontal axis is logarithmic.
+    fn pane(&self, metric: &Metric, trends: &[Trend], log: bool) -> Pane {
+        let single = trends.len() == 1;
         // The title differs between panes only by numbers.
         let name = metric.name.clone().into_owned();
-        let words = name.replace('_', " ");
-        let mut pane = Pane { y_label: with_unit(&words, &metric.unit), name, ..Pane::default() };
-        for (style, group) in groups.iter().enumerate() {
-            let label = if single { "arms".to_owned() } else { labels[style].clone() };
-            let trend = trend(study, group, &metric.name, power);
+        let y_label = with_unit(&name.replace('_', " "), &metric.unit);
+        let mut pane = Pane { name, y_label, ..Pane::default() };
+        for (style, trend) in trends.iter().enumerate() {
+            let label = if single { "arms" } else { &self.labels[style] };
             if single {
-                pane.title = trend.words(&metric.unit, unit_of_key(study, key)).unwrap_or_default();
+                pane.title = trend.words(&metric.unit, self.unit).unwrap_or_default();
             }
-            if let Some((y, band)) = trend.line(wide) {
+            if let Some((y, band)) = trend.line(log) {
                 let label = format!("fit of {label}");
                 let x = band.x.clone();
                 pane.curves.push(Curve { label, style, x, y, unlisted: true, ..Curve::default() });
                 pane.band = single.then_some(band);
             }
-            let drawn = Drawn::Markers;
             pane.curves.push(Curve {
-                label,
+                label: label.to_owned(),
                 style,
-                x: trend.x,
-                y: trend.y,
-                drawn,
+                x: trend.x.clone(),
+                y: trend.y.clone(),
+                drawn: Drawn::Markers,
                 unlisted: single,
                 ..Curve::default()
             });
         }
         pane
-    };
-    let metrics = metrics(study, key, groups);
-    let panes: Vec<Pane> = metrics.iter().take(MOST).map(pane).collect();
-    if panes.is_empty() {
-        return None;
     }
-    let which = if metrics.len() > MOST {
-        format!("{MOST} of the {} metrics that vary", metrics.len())
-    } else {
-        "Metrics".to_owned()
-    };
-    let curves = || panes.iter().flat_map(|pane| &pane.curves);
-    let is_fitted = curves().any(|curve| curve.drawn == Drawn::Line);
-    let lines =
-        said_if(is_fitted, " Lines: least squares, through four values or more; the title says of what.");
-    let grey = said_if(single && is_fitted, " Grey: 95 % confidence interval of the line.");
-    let is_left_out = groups.iter().flat_map(|group| &group.arms).any(|arm| study.rows[*arm].is_unsound());
-    let left_out = said_if(is_left_out, " Arms that failed or created energy are left out.");
-    let only = only(study, groups).map_or_else(String::new, |arms| format!(" Arms: {arms}."));
-    Some(Plot {
-        name: format!("trend-{}", file_name(key)),
-        caption: format!("{which} against `{key}`.{only}{lines}{grey}{left_out}"),
-        x_label: axis(study, key),
-        log: [wide, false],
-        across: 3,
-        panes,
-        ..Plot::default()
-    })
+
+    fn plot(&self, study: &Study) -> Option<Plot> {
+        let all: Vec<f64> = self.groups.iter().flat_map(|group| group.steps.iter().copied()).collect();
+        let wide = spans(&all);
+        let shown = self.metrics.iter().take(MOST);
+        let panes: Vec<Pane> = shown.map(|(metric, trends)| self.pane(metric, trends, wide)).collect();
+        if panes.is_empty() {
+            return None;
+        }
+        let which = match self.metrics.len() {
+            count if count > MOST => format!("{MOST} of the {count} metrics that vary"),
+            _ => "Metrics".to_owned(),
+        };
+        let is_fitted = panes.iter().flat_map(|pane| &pane.curves).any(|curve| curve.drawn == Drawn::Line);
+        let lines =
+            said_if(is_fitted, " Lines: least squares, through four values or more; the title says of what.");
+        let is_banded = is_fitted && self.groups.len() == 1;
+        let grey = said_if(is_banded, " Grey: 95 % confidence interval of the line.");
+        let mut arms = self.groups.iter().flat_map(|group| &group.arms);
+        let is_left_out = arms.any(|arm| study.rows[*arm].is_unsound());
+        let left_out = said_if(is_left_out, " Arms that failed or created energy are left out.");
+        let only = only(study, &self.groups).map_or_else(String::new, |arms| format!(" Arms: {arms}."));
+        Some(Plot {
+            name: format!("trend-{}", file_name(&self.key)),
+            caption: format!("{which} against `{}`.{only}{lines}{grey}{left_out}", self.key),
+            x_label: self.axis(),
+            log: [wide, false],
+            across: 3,
+            panes,
+            ..Plot::default()
+        })
+    }
 }
 
 /// The arms of a single group, which has no legend, if the study has others.
@@ -260,34 +273,33 @@ fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
     if let Some(methods) = methods.filter(|_| groups.len() > 1) {
         return methods;
     }
-    let keys = Keys::of(groups.iter().map(|group| group.common.as_str()), common_time(study));
-    let is_shared = |part: &&str| {
-        groups.len() > 1 && groups.iter().all(|group| group.common.split(", ").any(|other| other == *part))
+    let settings = groups.iter().flat_map(|group| &group.common);
+    let keys = Keys::of(settings.map(String::as_str), common_time(study));
+    let is_shared = |set: &&str| {
+        groups.len() > 1 && groups.iter().all(|group| group.common.iter().any(|other| other == *set))
     };
     let own = |group: &Refinement| {
-        let common = own_settings(study, &group.common);
-        let parts: Vec<&str> = common.split(", ").filter(|part| !is_shared(part)).collect();
-        keys.label(&parts.join(", "))
+        let mut own = own_settings(study, &group.common);
+        own.retain(|set| !is_shared(set));
+        keys.label(&own.join(", "))
     };
     groups.iter().map(own).collect()
 }
 
 /// Slopes and exponents with their intervals.
 pub(super) fn section(study: &Study) -> Markup {
-    let mut found = refined_keys(&study.manifest, LEAST, scalar);
-    found.retain(|_, groups| groups.iter().any(|group| group.arms.len() >= FITTED));
+    let mut sweeps: Vec<Sweep> = sweeps(study).collect();
+    sweeps.retain(|sweep| sweep.groups.iter().any(|group| group.arms.len() >= FITTED));
     html! {
-        @if !found.is_empty() {
-            @for (key, groups) in &found {
-                @let labels = labels(study, groups);
+        @if !sweeps.is_empty() {
+            @for sweep in &sweeps {
                 details {
-                    summary { "Slopes and exponents in " code { (key) } }
+                    summary { "Slopes and exponents in " code { (sweep.key) } }
                     table.metrics {
                         thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "Slope or exponent" } } }
-                        @for metric in metrics(study, key, groups) {
-                            @let power = power(study, groups, &metric.name);
-                            @for (group, label) in groups.iter().zip(&labels) {
-                                @if let Some(words) = trend(study, group, &metric.name, power).words(&metric.unit, unit_of_key(study, key)) {
+                        @for (metric, trends) in &sweep.metrics {
+                            @for (trend, label) in trends.iter().zip(&sweep.labels) {
+                                @if let Some(words) = trend.words(&metric.unit, sweep.unit) {
                                     tr {
                                         td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
                                         td { (Label(label)) } td { (Label(&words)) }
