@@ -66,13 +66,7 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     // Figures that are folded away come last, so that those shown have successive numbers.
     plots.sort_by_key(|plot| plot.folded);
     let figures: Vec<(bool, Figure)> = plots.iter().map(|plot| (plot.folded, plot.figure())).collect();
-    let page = page::page(&page::Content {
-        study: &study,
-        picture: picture.as_ref(),
-        figures: &figures,
-        origins: &origins,
-        systems: &systems,
-    });
+    let page = page::page(&study, picture.as_ref(), &figures, &origins, &systems);
     let all = picture.iter().chain(figures.iter().map(|(_, figure)| figure));
     publish(directory, "study.html", &page, all, Vec::new())
 }

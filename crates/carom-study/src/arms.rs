@@ -69,7 +69,8 @@ fn methods(file: &StudyFile) -> Vec<Draft> {
     let mut drafts: Vec<Draft> = Vec::new();
     for (i, arm) in file.arms.iter().enumerate() {
         let path = format!("arm[{i}]");
-        let own = arm.set.iter().map(|entry| entry_at(entry, &path));
+        let table = format!("{path}.");
+        let own = arm.set.iter().map(|entry| entry_at(entry, &table));
         drafts.push(Draft {
             name: arm.name.clone(),
             sets: with_common(file, own.collect()),
@@ -185,10 +186,9 @@ const BATHE: &str = "time.scheme={ kind = \"bathe\", rho_inf = 0.5 }";
 /// scheme and the second one, with twice the finest step. None if no steps fit its factors. The
 /// reference of arms that are all static is static, and has no second scheme.
 pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) -> Option<Vec<Draft>> {
-    let given: Vec<_> = file.fine.set.iter().map(|entry| entry_at(entry, "fine")).collect();
+    let given = file.fine.set.iter().map(|entry| entry_at(entry, "fine."));
+    let (own, others): (Vec<_>, Vec<_>) = given.partition(|(set, _)| set.starts_with("time.scheme"));
     let placed = |scheme: &str| (scheme.to_owned(), "fine".to_owned());
-    let is_scheme = |(set, _): &&(String, String)| set.starts_with("time.scheme");
-    let own: Vec<_> = given.iter().filter(is_scheme).cloned().collect();
     let of_arms = if is_static { STATIC } else { CHUNG_HULBERT };
     let own = if own.is_empty() { vec![placed(of_arms)] } else { own };
     let is_static = own.iter().any(|(set, _)| set.contains("\"static\""));
@@ -197,8 +197,7 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) ->
     let levels = levels_of_reference(file, case, step)?;
     let finest = levels.last()?;
     let draft = |name: String, level: &Level, scheme: &[(String, String)], check: bool| {
-        let others = given.iter().filter(|(set, _)| !set.starts_with("time.scheme")).cloned();
-        let mut sets = with_common(file, others.collect());
+        let mut sets = with_common(file, others.clone());
         let is_whole = scheme.iter().any(|(set, _)| set.starts_with("time.scheme="));
         sets.retain(|(set, _)| !(is_whole && set.starts_with("time.scheme")));
         sets.extend_from_slice(scheme);
@@ -289,9 +288,9 @@ fn replaces(key: &str, other: &str) -> bool {
     other.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-fn entry_at((key, value): &(String, Value), path: &str) -> (String, String) {
-    let dot = if path.is_empty() { "" } else { "." };
-    (assignment(key, value), format!("{path}{dot}set.\"{key}\""))
+/// An override of a table of the study file, whose path is given with a dot at its end.
+fn entry_at((key, value): &(String, Value), table: &str) -> (String, String) {
+    (assignment(key, value), format!("{table}set.\"{key}\""))
 }
 
 /// Text of a value for names; a table is its kind and numbers, `chung-hulbert 0.6`.

@@ -6,10 +6,10 @@ use std::sync::atomic::AtomicBool;
 use carom_record::study::{Arm, StudyManifest};
 use carom_run::ThreadCount;
 use carom_run::case::Case;
-use carom_run::recording::{self, Progress, RunError};
+use carom_run::recording::{self, RunError};
 
 use crate::error::StudyError;
-use crate::jobs::Ended;
+use crate::jobs::{Ended, OnStep};
 
 /// Computes run number `i` to its end; one that has begun is resumed.
 pub(crate) fn compute(
@@ -17,7 +17,7 @@ pub(crate) fn compute(
     directory: &Path,
     i: usize,
     threads: ThreadCount,
-    observe: &mut (dyn FnMut(&Progress) + Send),
+    observe: OnStep,
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {
     let arm = manifest.run(i);

@@ -50,14 +50,13 @@ pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec
         return;
     }
     let is_exact = file.reference.as_deref() == Some("exact") && goal != Goal::Friction;
-    let lacks = |case: &&Case| !case.exact.keys().any(|column| is_column(column));
-    if is_exact && arms.first().map(|(_, case)| *case).is_some_and(|case| lacks(&case)) {
+    let Some((_, case)) = arms.first().filter(|_| is_exact) else { return };
+    if !case.exact.keys().any(|column| is_column(column)) {
         let what = format!("the exact solution has nothing that the goal `{}` compares", goal.word());
         let help = "add a formula for it to [exact] of the case, or write `reference = \"fine\"`";
         problems.push(Problem::new("reference", what, "[exact] has no such column", help));
         return;
     }
-    let Some((_, case)) = arms.first().filter(|_| is_exact) else { return };
     if file.window.is_none() {
         let what = format!("the goal `{}` beside an exact reference needs `window`", goal.word());
         let why = "forces and stresses are compared after averaging, and formulas have no contact interval to \

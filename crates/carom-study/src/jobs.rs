@@ -45,6 +45,9 @@ impl Ended {
     }
 }
 
+/// What is told of every accepted time step of a run.
+pub(crate) type OnStep<'a> = &'a mut (dyn FnMut(&Progress) + Send);
+
 /// Number of threads of each of `jobs` concurrent runs, which share those of the machine.
 pub(crate) fn threads(jobs: usize) -> ThreadCount {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -56,7 +59,7 @@ pub(crate) fn threads(jobs: usize) -> ThreadCount {
 pub(crate) fn side_by_side(
     order: VecDeque<usize>,
     jobs: usize,
-    one: &(dyn Fn(usize, &mut (dyn FnMut(&Progress) + Send)) -> Result<Ended, StudyError> + Sync),
+    one: &(dyn Fn(usize, OnStep) -> Result<Ended, StudyError> + Sync),
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<(), StudyError> {

@@ -14,20 +14,19 @@
 //! accepted one becomes the arm.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use std::sync::{Mutex, PoisonError};
 
 use carom_record::metrics::cost;
 use carom_record::study::{Arm, StudyManifest, sets_step};
 use carom_record::{Manifest, RecordError, Status, json};
 use carom_run::case::Case;
-use carom_run::recording::{self, Progress, RunError};
+use carom_run::recording::{self, RunError};
 use serde::{Deserialize, Serialize};
 
 use crate::compute::{case_of, compute};
 use crate::error::StudyError;
-use crate::jobs::{Ended, Event, side_by_side, threads};
+use crate::jobs::{Ended, Event, OnStep, side_by_side, threads};
 
 /// Relative difference from the budget at which a cost is accepted; the page states twice this.
 const CLOSE: f64 = 0.05;
@@ -102,6 +101,11 @@ impl Pilot {
         (!tried(next)).then_some(next)
     }
 
+    /// The trial that was accepted.
+    fn accepted(&self) -> Option<&Trial> {
+        self.trials.get(self.settled?)
+    }
+
     /// The trial whose cost is closest to the budget; the first one if none has a cost.
     fn closest(&self) -> usize {
         let off = |t: &Trial| {
@@ -136,33 +140,37 @@ pub(crate) fn settle(
     let anchors = arms_with(&|arm| !arm.role.fine && arm.role.method.as_ref() == Some(&design.cost_of));
     let not_ended = |i: &usize| !manifest.has_ended(directory, &manifest.arms[*i]);
     let waiting = anchors.iter().copied().filter(not_ended).collect();
-    let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
-        compute(manifest, directory, i, threads(jobs), progress, stop)
-    };
+    let one = |i: usize, progress: OnStep| compute(manifest, directory, i, threads(jobs), progress, stop);
     side_by_side(waiting, jobs, &one, observe, stop)?;
     if anchors.iter().any(not_ended) {
         return Ok(false);
     }
-    let settled: Mutex<Vec<(usize, u64, Option<f64>)>> = Mutex::default();
-    let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
+    let one = |i: usize, progress: OnStep| {
         let is_anchor = |arm: &&Arm| arm.role.level == manifest.arms[i].role.level;
         let anchor = anchors.iter().map(|i| &manifest.arms[*i]).find(is_anchor);
         let budget = anchor.map_or(Ok(None), |arm| cost_of(&directory.join(&arm.directory)))?;
-        let (ended, steps, share) = pilot(manifest, directory, i, budget, progress, stop)?;
-        if ended.status != Status::Stopped {
-            settled.lock().unwrap_or_else(PoisonError::into_inner).push((i, steps, share));
-        }
-        Ok(ended)
+        pilot(manifest, directory, i, budget, progress, stop)
     };
     side_by_side(others.iter().copied().collect(), jobs, &one, observe, stop)?;
-    let settled = settled.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let all_settled = settled.len() == others.len();
-    for (i, steps, share) in settled {
-        adopt(manifest, i, steps)?;
-        manifest.arms[i].role.cost = share;
+    let mut all_settled = true;
+    for i in others {
+        let pilot = Pilot::read(&folder(manifest, directory, i))?;
+        match pilot.accepted().filter(|_| directory.join(&manifest.arms[i].directory).exists()) {
+            Some(trial) => {
+                adopt(manifest, i, trial.steps)?;
+                manifest.arms[i].role.cost = trial.cost.zip(pilot.budget).map(|(cost, budget)| cost / budget);
+            }
+            None => all_settled = false,
+        }
     }
     manifest.write(directory)?;
     Ok(all_settled)
+}
+
+/// The folder of the pilot runs of an arm.
+fn folder(manifest: &StudyManifest, directory: &Path, i: usize) -> PathBuf {
+    let arm = &manifest.arms[i].directory;
+    directory.join("pilots").join(arm.rsplit('/').next().unwrap_or(arm))
 }
 
 /// The counted cost of a run; none if it did not reach its end.
@@ -199,19 +207,17 @@ fn case_with(manifest: &StudyManifest, i: usize, steps: u64) -> Result<Case, Stu
     Ok(case)
 }
 
-/// Pilot runs of an arm until its cost matches the budget. Returns how the accepted one ended, its
-/// steps, and its cost divided by the budget.
+/// Pilot runs of an arm until its cost matches the budget. Returns how the accepted one ended.
 fn pilot(
     manifest: &StudyManifest,
     directory: &Path,
     i: usize,
     budget: Option<f64>,
-    progress: &mut (dyn FnMut(&Progress) + Send),
+    progress: OnStep,
     stop: &AtomicBool,
-) -> Result<(Ended, u64, Option<f64>), StudyError> {
+) -> Result<Ended, StudyError> {
     let arm = &manifest.arms[i];
-    let name = arm.directory.rsplit('/').next().unwrap_or(&arm.directory);
-    let folder = directory.join("pilots").join(name);
+    let folder = folder(manifest, directory, i);
     fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
     let mut pilot = Pilot::read(&folder)?;
     pilot.budget = pilot.budget.or(budget);
@@ -224,7 +230,7 @@ fn pilot(
         };
         let path = folder.join((pilot.trials.len() + 1).to_string());
         let cost = match computed(steps, &path) {
-            Ok(ended) if ended.status == Status::Stopped => return Ok((ended, steps, None)),
+            Ok(ended) if ended.status == Status::Stopped => return Ok(ended),
             Ok(_) => cost_of(&path)?,
             // The step is not possible, for example above the stable step of an explicit scheme.
             Err(StudyError::Arm { source: RunError::Case(_), .. }) => None,
@@ -236,13 +242,12 @@ fn pilot(
     let settled = pilot.settled.unwrap_or_default();
     let from = folder.join((settled + 1).to_string());
     let to = directory.join(&arm.directory);
-    let accepted = &pilot.trials[settled];
     if !to.exists() {
         // The record of an accepted trial may have been removed together with that of its arm.
         if !from.is_dir() {
-            let ended = computed(accepted.steps, &from)?;
+            let ended = computed(pilot.trials[settled].steps, &from)?;
             if ended.status == Status::Stopped {
-                return Ok((ended, accepted.steps, None));
+                return Ok(ended);
             }
         }
         fs::rename(&from, &to).map_err(RecordError::io("move", &from))?;
@@ -255,8 +260,7 @@ fn pilot(
     }
     let run = Manifest::read(&to)?;
     let wall = run.timings.get("total").copied().unwrap_or(0.0);
-    let share = accepted.cost.zip(pilot.budget).map(|(cost, budget)| cost / budget);
-    Ok((Ended { status: run.status, reason: run.reason, wall }, accepted.steps, share))
+    Ok(Ended { status: run.status, reason: run.reason, wall })
 }
 
 /// Starts or resumes a run of an arm with `steps` steps.
@@ -265,7 +269,7 @@ fn run_of(
     i: usize,
     steps: u64,
     path: &Path,
-    progress: &mut (dyn FnMut(&Progress) + Send),
+    progress: OnStep,
     stop: &AtomicBool,
 ) -> Result<Ended, StudyError> {
     let arm = &manifest.arms[i];

@@ -31,8 +31,6 @@ pub struct Plan {
 pub struct PlannedArm {
     /// Resolved case of the simulation.
     pub case: Case,
-    /// Text of the case file, and the changes applied to it.
-    pub source: Source,
     /// The warnings that the case and its model give.
     pub warnings: Vec<Warning>,
 }
@@ -70,8 +68,8 @@ impl Plan {
     /// As [`Self::of`], as far as there are such without models.
     pub fn cases(study: &Document, folder: &Path) -> Result<Vec<Case>, CaseError> {
         let (file, drafts, bases) = opened(study, folder, None)?;
-        let mut checked = Checked::new(study);
-        let cases = checked.read(&file, &drafts, &bases)?;
+        let mut checked = Checked::new(study, &file, &bases);
+        let cases = checked.read(&drafts)?;
         checked.end().map(|()| cases)
     }
 
@@ -83,11 +81,11 @@ impl Plan {
     pub fn with_case(study: &Document, folder: &Path, case: Option<&Document>) -> Result<Self, CaseError> {
         let (file, drafts, bases) = opened(study, folder, case)?;
         let mut problems = Vec::new();
-        let mut checked = Checked::new(study);
+        let mut checked = Checked::new(study, &file, &bases);
         // A misspelt key of one arm is told before the models of the others are built.
-        checked.read(&file, &drafts, &bases)?;
+        checked.read(&drafts)?;
         checked.end()?;
-        let planned = checked.arms(&file, drafts, &bases)?;
+        let planned = checked.arms(drafts)?;
         let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
         expects::check(&file, &known, &mut problems);
         goals::check(&file, &known, &mut problems);
@@ -95,14 +93,10 @@ impl Plan {
         comparable::check(&file, &drafts, &mut problems);
         checked.problems(&problems)?;
         checked.end()?;
-        let members = checked.members(&file, &planned)?;
+        let members = checked.members(&planned)?;
         checked.end()?;
         let manifest = manifest(study, file, &bases, &planned, members);
-        let arm = |p: Planned| PlannedArm {
-            source: Source { text: p.base.text.clone(), sets: p.sets(), ..Source::default() },
-            case: p.case,
-            warnings: p.warnings,
-        };
+        let arm = |Planned { case, warnings, .. }| PlannedArm { case, warnings };
         Ok(Self { manifest, arms: planned.into_iter().map(arm).collect() })
     }
 }

@@ -13,11 +13,10 @@ use crate::arms::{self, Draft};
 use crate::file::StudyFile;
 
 /// An arm whose case is valid.
-pub(crate) struct Planned<'a> {
+pub(crate) struct Planned {
     pub(crate) draft: Draft,
     pub(crate) case: Case,
     pub(crate) warnings: Vec<Warning>,
-    pub(crate) base: &'a Base,
 }
 
 /// The case files of a study, by their names in it.
@@ -45,12 +44,20 @@ pub(crate) fn bases(
 /// The check of the arms of a study, and the problems found so far.
 pub(crate) struct Checked<'a> {
     study: &'a Document,
+    file: &'a StudyFile,
+    bases: &'a BTreeMap<String, Base>,
     found: Vec<Diagnostic>,
 }
 
-impl<'s> Checked<'s> {
-    pub(crate) fn new(study: &'s Document) -> Self {
-        Self { study, found: Vec::new() }
+impl<'a> Checked<'a> {
+    pub(crate) fn new(study: &'a Document, file: &'a StudyFile, bases: &'a BTreeMap<String, Base>) -> Self {
+        Self { study, file, bases, found: Vec::new() }
+    }
+
+    /// The case file of a draft.
+    fn base_of(&self, draft: &Draft) -> Option<&'a Base> {
+        let name = draft.case.as_ref().or(self.file.case.as_ref())?;
+        self.bases.get(name)
     }
 
     /// Adds problems of the study file.
@@ -66,15 +73,10 @@ impl<'s> Checked<'s> {
     }
 
     /// Reads the cases of drafts without building their models; adds their problems.
-    pub(crate) fn read(
-        &mut self,
-        file: &StudyFile,
-        drafts: &[Draft],
-        bases: &BTreeMap<String, Base>,
-    ) -> Result<Vec<Case>, CaseError> {
+    pub(crate) fn read(&mut self, drafts: &[Draft]) -> Result<Vec<Case>, CaseError> {
         let mut cases = Vec::new();
         for draft in drafts {
-            let Some(base) = base_of(file, draft, bases) else { continue };
+            let Some(base) = self.base_of(draft) else { continue };
             match read_with(&base.name, &base.text, &changes(draft)) {
                 Ok((_, case)) => cases.push(case),
                 Err(error) => self.add(draft, base, error, read_with)?,
@@ -84,9 +86,10 @@ impl<'s> Checked<'s> {
     }
 
     /// A draft with its case and warnings; none if the case is wrong.
-    fn planned<'a>(&mut self, draft: Draft, base: &'a Base) -> Result<Option<Planned<'a>>, CaseError> {
+    fn planned(&mut self, draft: Draft) -> Result<Option<Planned>, CaseError> {
+        let Some(base) = self.base_of(&draft) else { return Ok(None) };
         match resolved(&base.name, &base.text, &changes(&draft)) {
-            Ok((case, warnings)) => Ok(Some(Planned { draft, case, warnings, base })),
+            Ok((case, warnings)) => Ok(Some(Planned { draft, case, warnings })),
             Err(error) => self.add(&draft, base, error, resolved).map(|()| None),
         }
     }
@@ -113,74 +116,54 @@ impl<'s> Checked<'s> {
     }
 
     /// The arms, then the runs of the computed reference, whose step depends on those of all arms.
-    pub(crate) fn arms<'a>(
-        &mut self,
-        file: &StudyFile,
-        drafts: Vec<Draft>,
-        bases: &'a BTreeMap<String, Base>,
-    ) -> Result<Vec<Planned<'a>>, CaseError> {
-        let computed = arms::computes_reference(file, &drafts);
+    pub(crate) fn arms(&mut self, drafts: Vec<Draft>) -> Result<Vec<Planned>, CaseError> {
+        let computed = arms::computes_reference(self.file, &drafts);
         let count = drafts.len();
         let mut planned = Vec::new();
-        self.plan(file, drafts, bases, &mut planned)?;
+        for draft in drafts {
+            planned.extend(self.planned(draft)?);
+        }
         if computed && planned.len() == count {
             let step = planned.iter().map(|p| p.case.time.step).fold(f64::INFINITY, f64::min);
-            let first = &planned[0].case;
             let is_static = planned.iter().all(|p| p.case.time.scheme.is_static());
-            match arms::fine(file, first, step, is_static) {
-                Some(levels) => self.plan(file, levels, bases, &mut planned)?,
+            match arms::fine(self.file, &planned[0].case, step, is_static) {
+                Some(levels) => {
+                    for draft in levels {
+                        planned.extend(self.planned(draft)?);
+                    }
+                }
                 None => self.found.push(self.study.diagnose(&no_steps())),
             }
         }
         Ok(planned)
     }
 
-    fn plan<'a>(
-        &mut self,
-        file: &StudyFile,
-        drafts: Vec<Draft>,
-        bases: &'a BTreeMap<String, Base>,
-        planned: &mut Vec<Planned<'a>>,
-    ) -> Result<(), CaseError> {
-        for draft in drafts {
-            if let Some(base) = base_of(file, &draft, bases) {
-                planned.extend(self.planned(draft, base)?);
-            }
-        }
-        Ok(())
-    }
-
     /// The members of all arms, except for the arms themselves.
-    pub(crate) fn members(&mut self, file: &StudyFile, planned: &[Planned]) -> Result<Vec<Arm>, CaseError> {
+    pub(crate) fn members(&mut self, planned: &[Planned]) -> Result<Vec<Arm>, CaseError> {
+        let Some(ensemble) = &self.file.ensemble else { return Ok(Vec::new()) };
         let mut members = Vec::new();
         for (i, arm) in planned.iter().enumerate() {
-            let all = file.ensemble.iter().flat_map(|e| arms::members(e, i, &arm.draft, &arm.case));
+            let all = arms::members(ensemble, i, &arm.draft, &arm.case).into_iter();
             for (j, draft) in all.enumerate() {
                 let directory = format!("members/{:02}-{:03}", i + 1, j + 1);
-                members.extend(self.planned(draft, arm.base)?.map(|member| member.stored(directory)));
+                members.extend(self.planned(draft)?.map(|member| member.stored(directory)));
             }
         }
         let is_swapped = |run: &Arm| run.role.member.is_some_and(|of| of.member.swapped);
-        let is_asked = file.ensemble.as_ref().is_some_and(|ensemble| ensemble.swapped);
-        if is_asked && self.found.is_empty() && !members.iter().any(is_swapped) {
+        if ensemble.swapped && self.found.is_empty() && !members.iter().any(is_swapped) {
             self.found.push(self.study.diagnose(&no_sides()));
         }
         Ok(members)
     }
 }
 
-impl Planned<'_> {
-    /// The changes of its case.
-    pub(crate) fn sets(&self) -> Vec<String> {
-        self.draft.sets.iter().map(|(set, _)| set.clone()).collect()
-    }
-
+impl Planned {
     /// Record of an arm in `study.json`.
     pub(crate) fn stored(&self, directory: String) -> Arm {
         Arm {
             name: self.draft.name.clone(),
             directory,
-            sets: self.sets(),
+            sets: self.draft.sets.iter().map(|(set, _)| set.clone()).collect(),
             steps: self.case.time.steps() as u64,
             role: self.draft.role.clone(),
             case_path: self.draft.case.clone(),
@@ -188,11 +171,6 @@ impl Planned<'_> {
             case: self.case.to_json().unwrap_or_default(),
         }
     }
-}
-
-/// The case file of a draft.
-fn base_of<'a>(file: &StudyFile, draft: &Draft, bases: &'a BTreeMap<String, Base>) -> Option<&'a Base> {
-    draft.case.as_ref().or(file.case.as_ref()).and_then(|name| bases.get(name))
 }
 
 /// The changes of a draft, with its expectations.

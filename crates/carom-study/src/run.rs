@@ -7,11 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_record::study::{Row, Study, StudyManifest};
 use carom_record::{RecordError, Status};
-use carom_run::recording::Progress;
 
 use crate::compute::{case_of, compute};
 use crate::error::StudyError;
-use crate::jobs::{Event, side_by_side, threads};
+use crate::jobs::{Event, OnStep, side_by_side, threads};
 use crate::plan::Plan;
 use crate::{checks, matched, theory};
 
@@ -83,9 +82,7 @@ pub fn resume(
     }
     waiting.sort_by(|a, b| b.1.total_cmp(&a.1));
     let order = waiting.into_iter().map(|(i, _)| i).collect();
-    let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
-        compute(&manifest, directory, i, threads(jobs), progress, stop)
-    };
+    let one = |i: usize, progress: OnStep| compute(&manifest, directory, i, threads(jobs), progress, stop);
     side_by_side(order, jobs, &one, observe, stop)?;
     conclude(manifest, directory, stop)
 }

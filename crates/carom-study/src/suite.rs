@@ -49,9 +49,8 @@ impl Suite {
     pub fn read(paths: &[PathBuf], fast: bool) -> Result<Self, CaseError> {
         let mut files = Vec::new();
         for path in paths {
-            let folder = path.is_dir();
-            let below = if folder { toml_files(path)? } else { vec![path.clone()] };
-            files.extend(below.into_iter().map(|file| (family(path, &file, folder), file)));
+            let below = if path.is_dir() { toml_files(path)? } else { vec![path.clone()] };
+            files.extend(below.into_iter().map(|file| (family(path, &file), file)));
         }
         files.sort();
         files.dedup_by(|a, b| a.1 == b.1);
@@ -73,20 +72,16 @@ impl Suite {
     }
 }
 
-/// The subfolder of the given folder that contains the file, or the folder itself.
-fn family(named: &Path, file: &Path, folder: bool) -> String {
-    let parent = file.parent().unwrap_or(Path::new(""));
-    let below =
-        if folder { parent.strip_prefix(named).ok().and_then(|p| p.components().next()) } else { None };
-    let name = if let Some(first) = below {
-        first.as_os_str().to_owned()
-    } else {
-        // `case.toml` alone has no folder in its path.
-        let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-        let folder = whole.parent().and_then(Path::file_name);
-        folder.map_or_else(|| "cases".into(), ToOwned::to_owned)
+/// The subfolder of the given folder that contains the file, or the folder of the file itself.
+fn family(named: &Path, file: &Path) -> String {
+    // `case.toml` alone has no folder in its path.
+    let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+    let below = file.strip_prefix(named).ok().and_then(|below| below.parent()?.components().next());
+    let name = match below {
+        Some(first) => Some(first.as_os_str()),
+        None => whole.parent().and_then(Path::file_name),
     };
-    name.to_string_lossy().into_owned()
+    name.map_or_else(|| "cases".into(), |name| name.to_string_lossy().into_owned())
 }
 
 fn toml_files(folder: &Path) -> Result<Vec<PathBuf>, CaseError> {

@@ -15,7 +15,7 @@ use carom_run::case::Case;
 use carom_run::recording::{self, Progress};
 
 use crate::error::StudyError;
-use crate::jobs::{Ended, Event, side_by_side};
+use crate::jobs::{Ended, Event, OnStep, side_by_side};
 use crate::memory::fit;
 use crate::suite::{Item, Kind, Suite};
 
@@ -79,7 +79,7 @@ impl Suite {
         let order = order(&units, self.items.len(), options.fail_fast);
         // Set by Ctrl-C, and with `fail_fast` by the first miss.
         let halt = AtomicBool::new(false);
-        let one = |i: usize, progress: &mut (dyn FnMut(&Progress) + Send)| {
+        let one = |i: usize, progress: OnStep| {
             let Unit { name, directory, case, source, .. } = &units[i];
             let mut watched = |p: &Progress| {
                 halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
@@ -130,14 +130,9 @@ impl Suite {
         let mut places: Vec<String> = Vec::new();
         for item in &self.items {
             let first = format!("{}/{}", item.family, item.name);
-            let mut place = first.clone();
-            for n in 2.. {
-                if !places.contains(&place) {
-                    break;
-                }
-                place = format!("{first}-{n}");
-            }
-            places.push(place);
+            let numbered = (2..).map(|n| format!("{first}-{n}"));
+            let mut possible = std::iter::once(first.clone()).chain(numbered);
+            places.extend(possible.find(|place| !places.contains(place)));
         }
         places
     }
@@ -188,7 +183,7 @@ impl Item {
                     name: format!("{name}, {}", arm.name),
                     directory: directory.join(&arm.directory),
                     case: bare(planned.case.clone(), whole),
-                    source: planned.source.clone(),
+                    source: plan.manifest.source_of(arm),
                 };
                 Ok(arms.map(unit).collect())
             }

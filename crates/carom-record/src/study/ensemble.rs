@@ -130,12 +130,8 @@ impl Spread {
 
     /// Largest distance of a value from the median.
     pub fn half_width(&self) -> f64 {
-        self.farthest(self.median())
-    }
-
-    /// Largest distance of a value from `x`.
-    pub fn farthest(&self, x: f64) -> f64 {
+        let median = self.median();
         let (low, high) = self.range();
-        (high - x).max(x - low)
+        (high - median).max(median - low)
     }
 }

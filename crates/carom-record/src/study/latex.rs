@@ -53,9 +53,9 @@ pub fn number(x: f64) -> String {
 impl Study {
     /// The ranking as a LaTeX table; needs no package. The recommended arm is bold.
     pub(super) fn latex(&self, ranking: &Ranking) -> String {
-        let unit = |name: &str| self.metrics().iter().find(|m| m.name == name).map(|m| escaped(&m.unit));
-        let time = unit("contact_start").filter(|unit| !unit.is_empty());
-        let time = time.map_or_else(String::new, |unit| format!(" ({unit})"));
+        let start = self.metrics().into_iter().find(|metric| metric.name == "contact_start");
+        let unit = start.map(|start| escaped(&start.unit)).filter(|unit| !unit.is_empty());
+        let time = unit.map_or_else(String::new, |unit| format!(" ({unit})"));
         let words = ranking.measure.as_ref().map_or(String::new(), |measure| escaped(&measure.words));
         let mut out = format!(
             "% {words}\n\\begin{{tabular}}{{rlrrrrr}}\n\\hline\n\

@@ -130,17 +130,16 @@ impl Study {
         let mut compared = Vec::new();
         for (i, arm) in manifest.runs().enumerate() {
             let record = match manifest.record(directory, arm) {
-                Err(error) if !error.is_system() => {
-                    rows.push(Row::damaged(arm, &error, directory));
+                Err(error) if !error.is_system() => Err(Row::damaged(arm, &error, directory)),
+                record => record?.ok_or_else(|| Row { name: arm.name.clone(), ..Row::default() }),
+            };
+            let run = match record {
+                Ok(run) => run,
+                Err(row) => {
+                    rows.push(row);
                     compared.push(None);
                     continue;
                 }
-                record => record?,
-            };
-            let Some(run) = record else {
-                rows.push(Row { name: arm.name.clone(), ..Row::default() });
-                compared.push(None);
-                continue;
             };
             if i < manifest.arms.len() {
                 visit(i, &run);

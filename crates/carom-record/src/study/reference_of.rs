@@ -37,27 +37,24 @@ impl StudyManifest {
     /// most three: the named arm after those arms that differ from it only in a longer step and a
     /// mesh that is no finer.
     fn reference_arms(&self) -> Vec<usize> {
-        let Some(named) = self.arms.iter().position(|a| self.reference.as_ref() == Some(&a.name)) else {
-            return Vec::new();
+        let is_named = |arm: &&Arm| self.reference.as_ref() == Some(&arm.name);
+        let Some(named) = self.arms.iter().find(is_named) else { return Vec::new() };
+        let size = |arm: &Arm| step(arm, "time.step").unwrap_or_default();
+        let others = |arm: &Arm| -> Vec<String> {
+            arm.sets_without_step().filter(|set| !set.starts_with("refine=")).cloned().collect()
         };
-        let others = |a: &Arm| {
-            let sets = a.sets_without_step().filter(|set| !set.starts_with("refine=")).cloned();
-            (sets.collect::<Vec<String>>(), a.case_path.clone(), a.role.fine)
+        let is_level = |arm: &Arm| {
+            if named.role.fine {
+                return arm.role.fine && !arm.role.check;
+            }
+            let is_coarser = size(arm) >= size(named) && arm.facts.refine <= named.facts.refine;
+            let is_alike = !arm.role.fine && arm.case_path == named.case_path && others(arm) == others(named);
+            is_coarser && is_alike
         };
-        let size = |i: &usize| step(&self.arms[*i], "time.step").unwrap_or_default();
-        if self.arms[named].role.fine {
-            let is_level = |i: &usize| self.arms[*i].role.fine && !self.arms[*i].role.check;
-            let mut found: Vec<usize> = (0..self.arms.len()).filter(is_level).collect();
-            found.sort_by(|a, b| size(b).total_cmp(&size(a)));
-            return found;
-        }
-        let alike = |i: &usize| {
-            let is_finer = self.arms[*i].facts.refine > self.arms[named].facts.refine;
-            others(&self.arms[*i]) == others(&self.arms[named]) && size(i) >= size(&named) && !is_finer
-        };
-        let mut found: Vec<usize> = (0..self.arms.len()).filter(alike).collect();
-        found.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        found.split_off(found.len().saturating_sub(3))
+        let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| is_level(&self.arms[*i])).collect();
+        found.sort_by(|a, b| size(&self.arms[*b]).total_cmp(&size(&self.arms[*a])));
+        let most = if named.role.fine { found.len() } else { 3 };
+        found.split_off(found.len().saturating_sub(most))
     }
 
     /// The time to average over, if it is given; or else why there is none.

@@ -1,6 +1,8 @@
 //! Data for the page of a study from the records of its arms: columns, thinned, and the origin of
 //! each record.
 
+use std::ops::Range;
+
 use carom_record::Run;
 use carom_record::metrics::{Overlay, contact_force, probe_columns};
 use carom_record::study::Study;
@@ -147,16 +149,21 @@ pub(super) fn collect(
     }
 }
 
-/// A curve thinned to the first, lowest, highest and last point of each of 1600 intervals of equal
-/// row count, more than a figure has pixels.
+/// A curve thinned to the first, lowest, highest and last point of each of 1600 intervals, more
+/// than a figure has pixels.
 fn thinned(times: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    const SPANS: usize = 1600;
-    if times.len() <= 4 * SPANS {
+    const INTERVALS: usize = 1600;
+    if times.len() <= 4 * INTERVALS {
         return (times.to_vec(), values.to_vec());
     }
-    let span = |k: usize| k * times.len() / SPANS..(k + 1) * times.len() / SPANS;
-    let keep: Vec<usize> = (0..SPANS).flat_map(|k| ends_and_extremes(span(k), |i| values[i])).collect();
-    (keep.iter().map(|&i| times[i]).collect(), keep.iter().map(|&i| values[i]).collect())
+    let kept = intervals(times.len(), INTERVALS).flat_map(|rows| ends_and_extremes(rows, |i| values[i]));
+    kept.map(|i| (times[i], values[i])).unzip()
+}
+
+/// At most `most` intervals of equal row count.
+pub(super) fn intervals(rows: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
+    let count = rows.min(most);
+    (0..count).map(move |k| k * rows / count..(k + 1) * rows / count)
 }
 
 /// The unit of times, from the metrics of the arms; empty before any has finished.

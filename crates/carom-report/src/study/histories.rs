@@ -4,12 +4,13 @@
 use carom_record::study::Study;
 use carom_record::study::reference::{FORCE, Reference};
 
-use super::collected::{Column, Measured, common_time, named};
+use super::collected::{Column, Measured, common_time, intervals, named};
 use super::comparison::{methods, style_of};
 use super::curves::{Keys, contact, is_rough};
 use crate::labels::{capitalised, file_name, with_unit};
 use crate::plot::{Band, Curve, Pane, Plot};
 use crate::text::said_if;
+use crate::trace::ends_and_extremes;
 
 /// Most curves over each other.
 const TOGETHER: usize = 8;
@@ -18,8 +19,8 @@ const PANES: usize = 24;
 /// Panes and figures that are shown; the other figures are folded away.
 const OPEN_PANES: usize = 36;
 const OPEN: usize = 4;
-/// Most points of the reference in a pane.
-const POINTS: usize = 1200;
+/// Intervals of the reference in a pane, of which the ends and the extremes are drawn.
+const INTERVALS: usize = 600;
 
 /// The figures of all columns.
 pub(super) fn plots(study: &Study, columns: &[Column], measured: &Measured, time: &str) -> Vec<Plot> {
@@ -35,38 +36,22 @@ pub(super) fn plots(study: &Study, columns: &[Column], measured: &Measured, time
 /// The reference of a column as a line, and where its value is established, the band of its
 /// uncertainty.
 fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Band>)> {
-    let (x, y) = reference.column(column).filter(|(x, _)| !x.is_empty())?;
+    let (times, values) = reference.column(column).filter(|(times, _)| !times.is_empty())?;
     let off = reference.band(column);
-    let piece = (2 * x.len()).div_ceil(POINTS).max(1);
-    let rows = extremes(y, piece);
-    let around = |i: usize| i / piece * piece..(i / piece * piece + piece).min(y.len());
-    let low = |i: &usize| around(*i).map(|k| y[k] - off[k]).fold(f64::INFINITY, f64::min);
-    let high = |i: &usize| around(*i).map(|k| y[k] + off[k]).fold(f64::NEG_INFINITY, f64::max);
-    let x: Vec<f64> = rows.iter().map(|i| x[*i]).collect();
-    let is_known = reference.uncertainty(column).is_ok();
-    let band = is_known.then(|| Band {
-        name: "uncertainty",
-        x: x.clone(),
-        low: rows.iter().map(low).collect(),
-        high: rows.iter().map(high).collect(),
-    });
-    let y = rows.iter().map(|i| y[*i]).collect();
-    Some((Curve { label: "reference".to_owned(), thin: true, x, y, ..Curve::default() }, band))
-}
-
-/// The rows with the least and the largest value of every piece, and both ends: no peak is lost.
-fn extremes(y: &[f64], piece: usize) -> Vec<usize> {
-    let mut found = vec![0];
-    for from in (0..y.len()).step_by(piece.max(1)) {
-        let rows = || from..(from + piece).min(y.len());
-        let least = rows().min_by(|a, b| y[*a].total_cmp(&y[*b]));
-        let largest = rows().max_by(|a, b| y[*a].total_cmp(&y[*b]));
-        found.extend(least.into_iter().chain(largest));
+    let mut y = Vec::new();
+    let mut band = Band { name: "uncertainty", x: Vec::new(), low: Vec::new(), high: Vec::new() };
+    for rows in intervals(times.len(), INTERVALS) {
+        let low = rows.clone().map(|i| values[i] - off[i]).fold(f64::INFINITY, f64::min);
+        let high = rows.clone().map(|i| values[i] + off[i]).fold(f64::NEG_INFINITY, f64::max);
+        for i in ends_and_extremes(rows, |i| values[i]) {
+            y.push(values[i]);
+            band.x.push(times[i]);
+            band.low.push(low);
+            band.high.push(high);
+        }
     }
-    found.push(y.len() - 1);
-    found.sort_unstable();
-    found.dedup();
-    found
+    let line = Curve { label: "reference".to_owned(), thin: true, x: band.x.clone(), y, ..Curve::default() };
+    Some((line, reference.uncertainty(column).is_ok().then_some(band)))
 }
 
 /// The curves of a column: with a goal of every method at its finest level, else of every arm.
@@ -201,21 +186,4 @@ fn plot(study: &Study, column: &Column, measured: &Measured) -> Option<Plot> {
         panes,
         ..Plot::default()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::extremes;
-
-    /// A peak of one row is drawn, wherever it lies in its piece.
-    #[test]
-    fn no_peak_is_lost() {
-        for at in 0..40 {
-            let mut y = vec![1.0; 40];
-            y[at] = 7.0;
-            let rows = extremes(&y, 9);
-            assert!(rows.contains(&at) && rows.contains(&0) && rows.contains(&39), "{at}: {rows:?}");
-            assert!(rows.len() <= 12);
-        }
-    }
 }

@@ -11,20 +11,15 @@ use crate::document::{figure, framed};
 use crate::figure::Figure;
 use crate::text::Prose;
 
-/// Contents of a page.
-pub(super) struct Content<'a> {
-    pub(super) study: &'a Study,
-    /// The drawing of the first arm.
-    pub(super) picture: Option<&'a Figure>,
-    /// The figures, and whether each is folded away.
-    pub(super) figures: &'a [(bool, Figure)],
-    pub(super) origins: &'a [Origin],
-    pub(super) systems: &'a Systems,
-}
-
-/// The page.
-pub(super) fn page(content: &Content) -> String {
-    let Content { study, picture, figures, origins, systems } = *content;
+/// The page; `picture`: the drawing of the first arm; `figures`: each with whether it is folded
+/// away.
+pub(super) fn page(
+    study: &Study,
+    picture: Option<&Figure>,
+    figures: &[(bool, Figure)],
+    origins: &[Origin],
+    systems: &Systems,
+) -> String {
     let sections = [
         ("verdict", "Recommendation", verdict::section(study)),
         ("claims", "Claims", claims::section(study)),

@@ -136,12 +136,9 @@ impl Trend {
         if self.power {
             return Some(format!("exponent {slope} ±\u{a0}{interval}"));
         }
-        let unit = match (metric, key) {
-            ("" | "1", "") => String::new(),
-            ("" | "1", key) => format!(" per {key}"),
-            (metric, "") => format!(" {metric}"),
-            (metric, key) => format!(" {metric} per {key}"),
-        };
+        let metric = if metric == "1" { "" } else { metric };
+        let per = said_if(!key.is_empty(), " per ");
+        let unit = format!("{metric}{per}{key}");
         // The unit stays in one line.
         let unit = unit.trim_start().replace(' ', "\u{a0}");
         Some(format!("slope {slope} ±\u{a0}{interval} {unit}").trim_end().to_owned())

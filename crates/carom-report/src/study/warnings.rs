@@ -13,13 +13,15 @@ const FEW: usize = 4;
 
 /// Names of arms, or where there are many, their numbers.
 fn names(study: &Study, arms: &[usize]) -> String {
-    let numbers = || arms.iter().map(|arm| (arm + 1).to_string()).collect::<Vec<_>>().join(", ");
     match arms.len() {
         all if all == study.rows.len() && all > 1 => "all".to_owned(),
         few if few <= FEW => {
             arms.iter().map(|arm| study.rows[*arm].name.clone()).collect::<Vec<_>>().join("; ")
         }
-        _ => format!("numbers {}", numbers()),
+        _ => {
+            let numbers: Vec<String> = arms.iter().map(|arm| (arm + 1).to_string()).collect();
+            format!("numbers {}", numbers.join(", "))
+        }
     }
 }
 
