@@ -48,7 +48,7 @@ pub struct Verification {
 }
 
 /// A case, or a study with all its arms.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SetUp {
     /// Name of the folder of the set-up's file.
     pub family: String,

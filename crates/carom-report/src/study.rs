@@ -62,7 +62,7 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let mut plots: Vec<Plot> = comparison::plot(&study).into_iter().collect();
     plots.extend(histories::plots(&study, &columns, &measured, &time));
     plots.extend(trend::plots(&study));
-    plots.extend(theory::plot(&study).filter(|_| study.manifest.goal.is_some()));
+    plots.extend(theory::plot(&study));
     // Figures that are folded away come last, so that those shown have successive numbers.
     plots.sort_by_key(|plot| plot.folded);
     let figures: Vec<(bool, Figure)> = plots.iter().map(|plot| (plot.folded, plot.figure())).collect();

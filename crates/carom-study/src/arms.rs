@@ -80,33 +80,27 @@ fn methods(file: &StudyFile) -> Vec<Draft> {
             role: Role { by_cost: arm.by_cost, ..Role::default() },
         });
     }
-    for combination in combinations(&file.grid) {
-        let of = |&(key, i, value): &Chosen| (assignment(key, value), format!("grid.\"{key}\"[{i}]"));
-        let name = |(key, _, value): &Chosen| format!("{key}={}", brief(value));
+    let values = file.grid.iter().map(|(_, values)| values.len());
+    let combinations: usize = if file.grid.is_empty() { 0 } else { values.product() };
+    for combination in 0..combinations {
+        // The number of combinations of the keys that follow.
+        let mut following = combinations;
+        let mut sets = Vec::new();
+        let mut names = Vec::new();
+        for (key, values) in &file.grid {
+            following /= values.len();
+            let i = combination / following % values.len();
+            sets.push((assignment(key, &values[i]), format!("grid.\"{key}\"[{i}]")));
+            names.push(format!("{key}={}", brief(&values[i])));
+        }
         drafts.push(Draft {
-            name: combination.iter().map(name).collect::<Vec<_>>().join(", "),
+            name: names.join(", "),
             path: "grid".into(),
-            sets: with_common(file, combination.iter().map(of).collect()),
+            sets: with_common(file, sets),
             ..Draft::default()
         });
     }
     drafts
-}
-
-/// A key of the grid with one of its values, and the number of that value.
-type Chosen<'a> = (&'a str, usize, &'a Value);
-
-/// All combinations of a grid, the last key of which varies fastest; none of an empty grid.
-fn combinations(grid: &[(String, Vec<Value>)]) -> Vec<Vec<Chosen<'_>>> {
-    let mut found = if grid.is_empty() { Vec::new() } else { vec![Vec::new()] };
-    for (key, values) in grid {
-        let before = std::mem::take(&mut found);
-        for chosen in before {
-            let next = |(i, value)| [&chosen[..], &[(key.as_str(), i, value)]].concat();
-            found.extend(values.iter().enumerate().map(next));
-        }
-    }
-    found
 }
 
 /// Every method of a design at each level, or at its own step if no steps are given. For a method

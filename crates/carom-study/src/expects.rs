@@ -8,6 +8,7 @@ use carom_record::study::{Comparison, Refined};
 use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
+use crate::names::quoted;
 
 /// Arms and measured data whose names a study can contain.
 struct Known<'a> {
@@ -148,8 +149,8 @@ impl Known<'_> {
         let found: Vec<_> = self.arms.iter().filter(|(name, _)| arm.is_none_or(|arm| arm == *name)).collect();
         match arm {
             Some(arm) if found.is_empty() => {
-                let known: Vec<_> = self.arms.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-                Err(format!("no arm is named \"{arm}\"; the arms are: {}", known.join(", ")).into())
+                let known = quoted(self.arms.iter().map(|(name, _)| *name));
+                Err(format!("no arm is named \"{arm}\"; the arms are: {known}").into())
             }
             _ => Ok(found),
         }

@@ -222,24 +222,25 @@ fn pilot(
     let mut pilot = Pilot::read(&folder)?;
     pilot.budget = pilot.budget.or(budget);
     let mut computed = |steps: u64, path: &Path| run_of(manifest, i, steps, path, progress, stop);
-    while pilot.settled.is_none() {
-        let Some(steps) = pilot.next(arm.steps) else {
+    let settled = loop {
+        if let Some(settled) = pilot.settled {
+            break settled;
+        }
+        if let Some(steps) = pilot.next(arm.steps) {
+            let path = folder.join((pilot.trials.len() + 1).to_string());
+            let cost = match computed(steps, &path) {
+                Ok(ended) if ended.status == Status::Stopped => return Ok(ended),
+                Ok(_) => cost_of(&path)?,
+                // The step is not possible, for example above the stable step of an explicit scheme.
+                Err(StudyError::Arm { source: RunError::Case(_), .. }) => None,
+                Err(error) => return Err(error),
+            };
+            pilot.trials.push(Trial { steps, cost });
+        } else {
             pilot.settled = Some(pilot.closest());
-            pilot.write(&folder)?;
-            break;
-        };
-        let path = folder.join((pilot.trials.len() + 1).to_string());
-        let cost = match computed(steps, &path) {
-            Ok(ended) if ended.status == Status::Stopped => return Ok(ended),
-            Ok(_) => cost_of(&path)?,
-            // The step is not possible, for example above the stable step of an explicit scheme.
-            Err(StudyError::Arm { source: RunError::Case(_), .. }) => None,
-            Err(error) => return Err(error),
-        };
-        pilot.trials.push(Trial { steps, cost });
+        }
         pilot.write(&folder)?;
-    }
-    let settled = pilot.settled.unwrap_or_default();
+    };
     let from = folder.join((settled + 1).to_string());
     let to = directory.join(&arm.directory);
     if !to.exists() {

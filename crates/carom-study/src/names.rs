@@ -53,6 +53,11 @@ fn with_plain_numbers(name: &str) -> String {
     name.split(' ').map(plain).collect::<Vec<_>>().join(" ")
 }
 
+/// Names in quotes, with commas between them.
+pub(crate) fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
+}
+
 /// Checks the names of arms: that there are some, that they are unique, and that references to them
 /// exist.
 pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Problem>) {
@@ -79,8 +84,8 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
     if let Some(name) = &file.cost_of
         && !drafts.iter().any(|d| d.role.method.as_ref() == Some(name))
     {
-        let methods: Vec<_> = file.arms.iter().map(|a| format!("\"{}\"", a.name)).collect();
-        let why = format!("the methods are: {}", methods.join(", "));
+        let methods = quoted(file.arms.iter().map(|arm| arm.name.as_str()));
+        let why = format!("the methods are: {methods}");
         problems.push(Problem::new(
             "cost_of",
             format!("no method is named \"{name}\""),
@@ -96,7 +101,7 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
         let help = "give another arm in `cost_of`, or leave `match` out";
         problems.push(Problem::new(format!("arm[{i}].match"), what, why, help));
     }
-    let known = || drafts.iter().map(|d| format!("\"{}\"", d.name)).collect::<Vec<_>>().join(", ");
+    let known = || format!("the arms are: {}", quoted(drafts.iter().map(|draft| draft.name.as_str())));
     let exists = |name: &str| drafts.iter().any(|d| d.name == name);
     if let Some(reference) =
         file.reference.as_deref().filter(|name| !["exact", file::FINE_NAME].contains(name) && !exists(name))
@@ -105,7 +110,7 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
         problems.push(Problem::new(
             "reference",
             what,
-            format!("the arms are: {}", known()),
+            known(),
             "use one of them, \"exact\", or \"fine\" for a computed reference",
         ));
     }
@@ -115,12 +120,7 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
             Ok(comparison) => {
                 for arm in comparison.arms().into_iter().filter(|arm| !exists(arm)) {
                     let what = format!("no arm is named \"{arm}\"");
-                    problems.push(Problem::new(
-                        &path,
-                        what,
-                        format!("the arms are: {}", known()),
-                        "use one of them",
-                    ));
+                    problems.push(Problem::new(&path, what, known(), "use one of them"));
                 }
             }
             Err(why) => {

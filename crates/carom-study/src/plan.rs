@@ -15,7 +15,7 @@ use crate::expects;
 use crate::file::{self, ClaimKeys, StudyFile};
 use crate::goals;
 use crate::names;
-use crate::resolved::{Base, Checked, Planned, bases};
+use crate::resolved::{Checked, Planned, bases};
 
 /// A study that can be started.
 #[derive(Clone, Debug)]
@@ -106,7 +106,7 @@ fn opened(
     study: &Document,
     folder: &Path,
     case: Option<&Document>,
-) -> Result<(StudyFile, Vec<Draft>, BTreeMap<String, Base>), CaseError> {
+) -> Result<(StudyFile, Vec<Draft>, BTreeMap<String, Document>), CaseError> {
     let mut problems = Vec::new();
     let mut file = file::read(study, folder, &mut problems);
     if let Some(problem) = arms::too_many(&file, study.text().len()) {
@@ -128,13 +128,13 @@ fn opened(
 fn manifest(
     study: &Document,
     file: StudyFile,
-    bases: &BTreeMap<String, Base>,
+    bases: &BTreeMap<String, Document>,
     planned: &[Planned],
     members: Vec<Arm>,
 ) -> StudyManifest {
     let stem = Path::new(study.name()).file_stem();
     let stem = stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let text = |name: &String| bases.get(name).map(|base| base.text.clone()).unwrap_or_default();
+    let text = |name: &String| bases.get(name).map_or_else(String::new, |base| base.text().to_owned());
     let main = file.case.clone().unwrap_or_default();
     let others = bases.keys().filter(|name| **name != main).map(|name| (name.clone(), text(name)));
     let source = StudySource {

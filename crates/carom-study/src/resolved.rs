@@ -26,14 +26,14 @@ pub(crate) fn bases(
     given: Option<&Document>,
     file: &StudyFile,
     drafts: &[Draft],
-) -> Result<BTreeMap<String, Base>, CaseError> {
+) -> Result<BTreeMap<String, Document>, CaseError> {
     let mut bases = BTreeMap::new();
     let named = drafts.iter().map(|d| (d.case.as_ref(), format!("{}.case", d.path)));
     for (name, place) in std::iter::once((file.case.as_ref(), "case".to_owned())).chain(named) {
         if let Some(name) = name.filter(|name| !bases.contains_key(*name)) {
             let base = match given.filter(|case| case.name() == name) {
-                Some(case) => Base::of(case),
-                None => Base::read(study, folder, name, &place)?,
+                Some(case) => case.clone(),
+                None => base(study, folder, name, &place)?,
             };
             bases.insert(name.clone(), base);
         }
@@ -45,17 +45,21 @@ pub(crate) fn bases(
 pub(crate) struct Checked<'a> {
     study: &'a Document,
     file: &'a StudyFile,
-    bases: &'a BTreeMap<String, Base>,
+    bases: &'a BTreeMap<String, Document>,
     found: Vec<Diagnostic>,
 }
 
 impl<'a> Checked<'a> {
-    pub(crate) fn new(study: &'a Document, file: &'a StudyFile, bases: &'a BTreeMap<String, Base>) -> Self {
+    pub(crate) fn new(
+        study: &'a Document,
+        file: &'a StudyFile,
+        bases: &'a BTreeMap<String, Document>,
+    ) -> Self {
         Self { study, file, bases, found: Vec::new() }
     }
 
     /// The case file of a draft.
-    fn base_of(&self, draft: &Draft) -> Option<&'a Base> {
+    fn base_of(&self, draft: &Draft) -> Option<&'a Document> {
         let name = draft.case.as_ref().or(self.file.case.as_ref())?;
         self.bases.get(name)
     }
@@ -77,7 +81,7 @@ impl<'a> Checked<'a> {
         let mut cases = Vec::new();
         for draft in drafts {
             let Some(base) = self.base_of(draft) else { continue };
-            match read_with(&base.name, &base.text, &changes(draft)) {
+            match read_with(base.name(), base.text(), &changes(draft)) {
                 Ok((_, case)) => cases.push(case),
                 Err(error) => self.add(draft, base, error, read_with)?,
             }
@@ -88,7 +92,7 @@ impl<'a> Checked<'a> {
     /// A draft with its case and warnings; none if the case is wrong.
     fn planned(&mut self, draft: Draft) -> Result<Option<Planned>, CaseError> {
         let Some(base) = self.base_of(&draft) else { return Ok(None) };
-        match resolved(&base.name, &base.text, &changes(&draft)) {
+        match resolved(base.name(), base.text(), &changes(&draft)) {
             Ok((case, warnings)) => Ok(Some(Planned { draft, case, warnings })),
             Err(error) => self.add(&draft, base, error, resolved).map(|()| None),
         }
@@ -100,12 +104,12 @@ impl<'a> Checked<'a> {
     fn add<T>(
         &mut self,
         draft: &Draft,
-        base: &Base,
+        base: &Document,
         error: CaseError,
         of: impl Fn(&str, &str, &[String]) -> Result<T, CaseError>,
     ) -> Result<(), CaseError> {
         let found = diagnostics(error)?;
-        let own = of(&base.name, &base.text, &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+        let own = of(base.name(), base.text(), &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
         for diagnostic in found {
             let placed = arms::placed(self.study, draft, &diagnostic, &own);
             if !self.found.contains(&placed) {
@@ -132,7 +136,14 @@ impl<'a> Checked<'a> {
                         planned.extend(self.planned(draft)?);
                     }
                 }
-                None => self.found.push(self.study.diagnose(&no_steps())),
+                None => {
+                    self.found.push(self.study.diagnose(&Problem::new(
+                        "fine.mesh",
+                        "no steps of the reference are in the ratios of these factors",
+                        "step and mesh are refined together, and every step divides the end time",
+                        "choose simple ratios, for example `mesh = [1, 1.5, 2]`",
+                    )));
+                }
             }
         }
         Ok(planned)
@@ -151,7 +162,12 @@ impl<'a> Checked<'a> {
         }
         let is_swapped = |run: &Arm| run.role.member.is_some_and(|of| of.member.swapped);
         if ensemble.swapped && self.found.is_empty() && !members.iter().any(is_swapped) {
-            self.found.push(self.study.diagnose(&no_sides()));
+            self.found.push(self.study.diagnose(&Problem::new(
+                "ensemble.swapped",
+                "no contact has sides that can be swapped",
+                "only two sides of bodies can be swapped, not a side and a rigid primary or itself",
+                "leave `swapped` out",
+            )));
         }
         Ok(members)
     }
@@ -178,51 +194,17 @@ fn changes(draft: &Draft) -> Vec<String> {
     draft.sets.iter().map(|(set, _)| set.clone()).chain([draft.expectations()]).collect()
 }
 
-/// The problem that no steps of the computed reference both divide the end time and have the ratios
-/// of its meshes.
-fn no_steps() -> Problem {
-    Problem::new(
-        "fine.mesh",
-        "no steps of the reference are in the ratios of these factors",
-        "step and mesh are refined together, and every step divides the end time",
-        "choose simple ratios, for example `mesh = [1, 1.5, 2]`",
-    )
-}
-
-/// The problem that no contact of any arm has two sides that can be swapped.
-fn no_sides() -> Problem {
-    Problem::new(
-        "ensemble.swapped",
-        "no contact has sides that can be swapped",
-        "only two sides of bodies can be swapped, not a side and a rigid primary or itself",
-        "leave `swapped` out",
-    )
-}
-
-/// A case file that arms are made from by changes.
-pub(crate) struct Base {
-    name: String,
-    pub(crate) text: String,
-}
-
-impl Base {
-    /// Reads the case file `name`; errors are reported at `place` of the study.
-    fn read(study: &Document, folder: &Path, name: &str, place: &str) -> Result<Self, CaseError> {
-        let path = folder.join(name);
-        let document = Document::open(&path, &[]).map_err(|error| match error {
-            CaseError::Wrong(found) if !path.is_file() => {
-                let what = format!("the case `{name}` cannot be read: {}", found[0].what);
-                let why = "the path is relative to the study file";
-                study.diagnose_all(&[Problem::new(place, what, why, "correct the path")])
-            }
-            error => error,
-        })?;
-        Ok(Self::of(&document))
-    }
-
-    fn of(document: &Document) -> Self {
-        Self { name: document.name().to_owned(), text: document.text().to_owned() }
-    }
+/// Reads the case file `name`; errors are reported at `place` of the study.
+fn base(study: &Document, folder: &Path, name: &str, place: &str) -> Result<Document, CaseError> {
+    let path = folder.join(name);
+    Document::open(&path, &[]).map_err(|error| match error {
+        CaseError::Wrong(found) if !path.is_file() => {
+            let what = format!("the case `{name}` cannot be read: {}", found[0].what);
+            let why = "the path is relative to the study file";
+            study.diagnose_all(&[Problem::new(place, what, why, "correct the path")])
+        }
+        error => error,
+    })
 }
 
 /// A case with changes, and its warnings; its model is built once, to find what only the model

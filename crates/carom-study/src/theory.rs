@@ -23,11 +23,11 @@ fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
     let Ok(integrator) = scheme.integrator() else { return [None; 3] };
     if let Integrator::Nonsmooth(scheme, _) = &integrator {
         let pair = scheme.oscillation(omega_dt);
-        let [damping, period] = [
+        return [
+            Some(scheme.spectral_radius(omega_dt)),
             pair.map(|(modulus, angle)| -modulus.ln() / angle),
             pair.map(|(_, angle)| omega_dt / angle - 1.0),
         ];
-        return [Some(scheme.spectral_radius(omega_dt)), damping, period];
     }
     let Some(kernel) = integrator.kernel() else { return [None; 3] };
     let pair = carom_time::map::principal(kernel, omega_dt);

@@ -144,11 +144,10 @@ fn order(units: &[Unit], items: usize, shortest_first: bool) -> Vec<usize> {
     let mut order: Vec<usize> = (0..units.len()).collect();
     let mut works = vec![0.0; items];
     units.iter().for_each(|unit| works[unit.item] += unit.case.work());
-    if shortest_first {
-        order.sort_by(|a, b| works[units[*a].item].total_cmp(&works[units[*b].item]));
-    } else {
-        order.sort_by(|a, b| units[*b].case.work().total_cmp(&units[*a].case.work()));
-    }
+    let rank = |i: usize| {
+        if shortest_first { works[units[i].item] } else { -units[i].case.work() }
+    };
+    order.sort_by(|a, b| rank(*a).total_cmp(&rank(*b)));
     order
 }
 
@@ -201,15 +200,11 @@ impl Item {
         let mut set_up = SetUp {
             family: self.family.clone(),
             name: self.name.clone(),
-            title: String::new(),
             file: self.file.display().to_string(),
-            input_hash: String::new(),
             directory: place.to_owned(),
             runs: 1,
-            stopped: Vec::new(),
-            contact: false,
             wall,
-            rows: Vec::new(),
+            ..SetUp::default()
         };
         match &self.kind {
             Kind::Case(case, _) => {

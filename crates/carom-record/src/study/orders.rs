@@ -85,25 +85,6 @@ fn others<'a>(arm: &'a Arm, key: &str) -> impl Iterator<Item = &'a str> {
     arm.case_path.as_deref().into_iter().chain(sets)
 }
 
-/// Order from the errors of the two finest arms with respect to a reference, which may be a third
-/// one with a shorter step.
-fn against_reference(
-    order: &OrderOf,
-    manifest: &StudyManifest,
-    reference: &str,
-    [(h1, two), (h2, three)]: [(f64, usize); 2],
-    errors: [f64; 2],
-) -> Result<f64, Reason> {
-    let key = order.against.as_str();
-    let arms = &manifest.arms;
-    let alike = |arm: &&Arm| [two, three].iter().all(|i| others(arm, key).eq(others(&arms[*i], key)));
-    let reference = arms.iter().find(|arm| arm.name == reference).filter(alike);
-    match reference.and_then(|arm| step(arm, key)) {
-        Some(own) => from_differences([h1, h2, own], [errors[0] - errors[1], errors[1]]),
-        None => from_errors([h1, h2], errors),
-    }
-}
-
 /// A quantity under refinement.
 pub enum Refined {
     /// A number of a record.
@@ -258,7 +239,15 @@ fn observed(
     if let Some(reference) = reference {
         let (_, values) = of_arms(&[name(two), name(three), reference])?;
         let errors = [apart(&values[0], &values[2]), apart(&values[1], &values[2])];
-        return against_reference(order, manifest, reference, [(h1, two), (h2, three)], errors);
+        // A reference that differs from the arms only in its step has an error of its own.
+        let key = order.against.as_str();
+        let arms = &manifest.arms;
+        let alike = |arm: &&Arm| [two, three].iter().all(|i| others(arm, key).eq(others(&arms[*i], key)));
+        let arm = arms.iter().find(|arm| arm.name == reference).filter(alike);
+        return match arm.and_then(|arm| step(arm, key)) {
+            Some(own) => from_differences([h1, h2, own], [errors[0] - errors[1], errors[1]]),
+            None => from_errors([h1, h2], errors),
+        };
     }
     let first = group.steps.len().checked_sub(3).ok_or("three steps are needed")?;
     let (_, values) = of_arms(&[name(group.arms[first]), name(two), name(three)])?;

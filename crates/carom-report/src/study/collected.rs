@@ -59,13 +59,6 @@ impl Origin {
     }
 }
 
-/// The first arm whose record is bitwise that of an arm, if it is another one.
-pub(super) fn twin(origins: &[Origin], arm: usize) -> Option<usize> {
-    let own = origins.iter().find(|origin| origin.arm == arm && !origin.record.is_empty())?;
-    let first = origins.iter().find(|origin| origin.record == own.record)?.arm;
-    (first != arm).then_some(first)
-}
-
 /// The measured data of a study and of the cases of its arms.
 pub(super) struct Measured(pub(super) Vec<Overlay>);
 

@@ -84,8 +84,8 @@ struct Found {
     curves: Vec<Curve>,
     /// Measured data.
     points: Vec<Curve>,
-    reference: Option<Curve>,
-    band: Option<Band>,
+    /// The reference, with the band of its uncertainty.
+    reference: Option<(Curve, Option<Band>)>,
     /// The first contact, where it is short.
     contact: Option<(f64, f64)>,
 }
@@ -110,11 +110,11 @@ impl Found {
                 curves: self
                     .reference
                     .iter()
-                    .cloned()
+                    .map(|(line, _)| line.clone())
                     .chain([own])
                     .chain(self.points.iter().cloned())
                     .collect(),
-                band: self.band.clone(),
+                band: self.reference.as_ref().and_then(|(_, band)| band.clone()),
                 span: self.contact,
                 ..Pane::default()
             }
@@ -144,10 +144,10 @@ impl Found {
             0 => String::new(),
             hidden => format!(" {hidden} more are not drawn."),
         };
-        let reference = match (&self.reference, &self.band) {
-            (None, _) => "",
-            (_, None) => " Dashed: the reference.",
-            (_, Some(_)) => " Dashed: the reference, with the band of its uncertainty.",
+        let reference = match &self.reference {
+            None => "",
+            Some((_, None)) => " Dashed: the reference.",
+            Some((_, Some(_))) => " Dashed: the reference, with the band of its uncertainty.",
         };
         [
             said_if(self.contact.is_some(), " during the first contact"),
@@ -168,10 +168,9 @@ fn plot(study: &Study, column: &Column, measured: &Measured) -> Option<Plot> {
     let curves = curves(study, column);
     let end = curves.iter().filter_map(|curve| curve.x.last()).copied().fold(0.0, f64::max);
     let reference = study.reference.as_ref().and_then(|reference| reference_of(reference, &column.name));
-    let (reference, band) = reference.map_or((None, None), |(line, band)| (Some(line), band));
     let contact = contact(study, end);
     let points = measured.points(&column.name, end);
-    let found = Found { curves, points, reference, band, contact };
+    let found = Found { curves, points, reference, contact };
     let is_each = found.is_each();
     let panes = if is_each { found.each(&y_label) } else { found.together(&y_label) };
     if panes.iter().all(|pane| pane.curves.is_empty()) {

@@ -5,7 +5,6 @@ use carom_record::metrics::Metric;
 use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
-use super::collected::{Origin, twin};
 use super::comparison::style_of;
 use super::systems::Systems;
 use super::trend;
@@ -21,7 +20,7 @@ const MAIN: usize = 6;
 const COLUMNS: usize = 8;
 
 /// The arms with the metrics in which they differ.
-pub(super) fn results(study: &Study, origins: &[Origin]) -> Markup {
+pub(super) fn results(study: &Study) -> Markup {
     let mut metrics = study.metrics();
     metrics.retain(|metric| !metric.is_work() && differs(study, &metric.name));
     metrics.sort_by_key(|metric| trend::rank(&metric.name));
@@ -46,7 +45,7 @@ pub(super) fn results(study: &Study, origins: &[Origin]) -> Markup {
                             a href={ (arm.directory) "/report.html" } { (row.name) }
                             @if study.manifest.reference.as_ref() == Some(&row.name) { " (reference)" }
                         }
-                        (ended(study, i, row, twin(origins, i)))
+                        (ended(study, i, row))
                         @for metric in &metrics { td.n { (result(row, metric)) } }
                         td.n { (arm.steps) }
                     }
@@ -72,7 +71,7 @@ fn differs(study: &Study, name: &str) -> bool {
 }
 
 /// How an arm ended, and why.
-fn ended(study: &Study, arm: usize, row: &Row, twin: Option<usize>) -> Markup {
+fn ended(study: &Study, arm: usize, row: &Row) -> Markup {
     let (class, word) = match row.status {
         Some(Status::Finished) if row.is_unsound() => ("undecided", "finished, created energy"),
         Some(Status::Finished) => ("pass", "finished"),
@@ -85,7 +84,6 @@ fn ended(study: &Study, arm: usize, row: &Row, twin: Option<usize>) -> Markup {
         td.(class) {
             (word)
             @if let Some(reason) = &row.reason { br; span.small.plain { (typeset(reason)) } }
-            @if let Some(twin) = twin { br; span.small.plain { "identical to No. " (twin + 1) } }
             @if let Some(others) = study.finished_alike(arm) { br; span.small.plain { (typeset(&others)) } }
         }
     }

@@ -23,8 +23,8 @@ pub(super) fn page(
     let sections = [
         ("verdict", "Recommendation", verdict::section(study)),
         ("claims", "Claims", claims::section(study)),
-        ("results", "Results", numbers::results(study, origins)),
-        ("ranking", "Ranking", ranked::section(study, origins)),
+        ("results", "Results", numbers::results(study)),
+        ("ranking", "Ranking", ranked::section(study)),
         ("expectations", "Expectations", numbers::expectations(study)),
         ("warnings", "Warnings", warnings::section(study, origins)),
         ("figures", "Figures", drawn(figures, systems)),

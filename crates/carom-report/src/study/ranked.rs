@@ -8,7 +8,7 @@ use carom_record::study::reference::{Established, Reference};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
-use super::collected::{Origin, in_time, time_unit, twin};
+use super::collected::{in_time, time_unit};
 use super::comparison::methods;
 use crate::digits::{count, five, three};
 use crate::document::{file, labelled, or_dash};
@@ -23,7 +23,7 @@ const PLACES: &str = "The place of an arm is one plus the number of arms of its 
 const HIGHEST: f64 = 4.0;
 
 /// The ranking; nothing for a study without a goal.
-pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
+pub(super) fn section(study: &Study) -> Markup {
     let Some(ranking) = &study.ranking else { return Markup::default() };
     html! {
         @if let Ok(measure) = &ranking.measure {
@@ -31,7 +31,7 @@ pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
                 "Ranked by " (Label(&measure.words)) " (uncertainty of the errors: " (three(measure.uncertainty)) ")."
                 @if let Some(noise) = measure.noise { " The noise is known up to " (three(noise)) "." }
             }
-            (table(study, ranking, origins))
+            (table(study, ranking))
             p.small { (PLACES) " With all digits: " (file("ranking.csv")) "." }
         }
         (apart(study, ranking))
@@ -85,7 +85,7 @@ fn columns(study: &Study, ranking: &Ranking) -> Vec<Column> {
     all
 }
 
-fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
+fn table(study: &Study, ranking: &Ranking) -> Markup {
     let columns = columns(study, ranking);
     let chosen = ranking.verdict.as_ref().ok().map(|verdict| verdict.arm);
     let steps = study.manifest.design.as_ref().map_or(&[][..], |design| &design.steps);
@@ -95,7 +95,6 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
     };
     let ranked = || ranking.levels.iter().flatten();
     let is_ranked = |arm: usize| ranked().any(|ranked| ranked.arm == arm);
-    let same = |arm: usize| twin(origins, arm).filter(|first| is_ranked(*first));
     let is_apart = |arm: usize| ranking.apart.iter().any(|apart| apart.arm == arm);
     let all = methods(study).into_iter().flat_map(|(_, arms)| arms);
     let without = all.filter(|arm| !is_ranked(*arm) && !is_apart(*arm));
@@ -118,9 +117,6 @@ fn table(study: &Study, ranking: &Ranking, origins: &[Origin]) -> Markup {
                             td.method {
                                 @if chosen == Some(r.arm) { b { "▸ " (Label(arm.method())) } } @else { (Label(arm.method())) }
                                 @if study.manifest.by_cost(arm) { span.small { " (matched by cost)" } }
-                                @if let Some(first) = same(r.arm) {
-                                    span.small { " (identical to " (Label(study.manifest.arms[first].method())) ")" }
-                                }
                             }
                             @for (_, cells) in &columns { td.n { (Label(cells.get(&r.arm).map_or("–", String::as_str))) } }
                         }
