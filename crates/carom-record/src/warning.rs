@@ -18,11 +18,11 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// The warnings of several runs, each once, in order of their first occurrence, with the runs
-    /// that gave it.
-    pub fn shared<'a, R: Copy>(given: impl Iterator<Item = (R, &'a Self)>) -> Vec<(&'a Self, Vec<R>)> {
-        let mut shared: Vec<(&Self, Vec<R>)> = Vec::new();
-        for (run, warning) in given {
+    /// The warnings of several runs, each once, in order of their first occurrence, with the
+    /// numbers of the runs that gave it.
+    pub fn shared<'a>(given: impl Iterator<Item = &'a [Self]>) -> Vec<(&'a Self, Vec<usize>)> {
+        let mut shared: Vec<(&Self, Vec<usize>)> = Vec::new();
+        for (run, warning) in given.enumerate().flat_map(|(run, all)| all.iter().map(move |w| (run, w))) {
             match shared.iter_mut().find(|(known, _)| *known == warning) {
                 Some((_, runs)) => runs.push(run),
                 None => shared.push((warning, vec![run])),

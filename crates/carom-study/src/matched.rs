@@ -221,7 +221,19 @@ fn pilot(
     fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
     let mut pilot = Pilot::read(&folder)?;
     pilot.budget = pilot.budget.or(budget);
-    let mut computed = |steps: u64, path: &Path| run_of(manifest, i, steps, path, progress, stop);
+    // Starts or resumes a run of that many steps.
+    let mut computed = |steps: u64, path: &Path| -> Result<Ended, StudyError> {
+        let done = if path.join("manifest.json").is_file() {
+            recording::resume(path, 1, progress, stop)
+        } else {
+            let case = case_with(manifest, i, steps)?;
+            let mut source = manifest.source_of(arm);
+            source.sets.retain(|set| !sets_step(set));
+            source.sets.push(format!("time.step={:?}", case.time.step));
+            recording::run(&case, source, path, 1, progress, stop)
+        };
+        done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
+    };
     let settled = loop {
         if let Some(settled) = pilot.settled {
             break settled;
@@ -262,28 +274,6 @@ fn pilot(
     let run = Manifest::read(&to)?;
     let wall = run.timings.get("total").copied().unwrap_or(0.0);
     Ok(Ended { status: run.status, reason: run.reason, wall })
-}
-
-/// Starts or resumes a run of an arm with `steps` steps.
-fn run_of(
-    manifest: &StudyManifest,
-    i: usize,
-    steps: u64,
-    path: &Path,
-    progress: OnStep,
-    stop: &AtomicBool,
-) -> Result<Ended, StudyError> {
-    let arm = &manifest.arms[i];
-    let done = if path.join("manifest.json").is_file() {
-        recording::resume(path, 1, progress, stop)
-    } else {
-        let case = case_with(manifest, i, steps)?;
-        let mut source = manifest.source_of(arm);
-        source.sets.retain(|set| !sets_step(set));
-        source.sets.push(format!("time.step={:?}", case.time.step));
-        recording::run(&case, source, path, 1, progress, stop)
-    };
-    done.map(Ended::of).map_err(|source| StudyError::Arm { arm: arm.name.clone(), source })
 }
 
 #[cfg(test)]

@@ -39,8 +39,7 @@ impl Plan {
     /// The warnings that the cases of all arms give before they run, each once, with the numbers of
     /// the arms.
     pub fn warnings(&self) -> Vec<(&Warning, Vec<usize>)> {
-        let given = self.arms.iter().enumerate();
-        Warning::shared(given.flat_map(|(arm, planned)| planned.warnings.iter().map(move |w| (arm, w))))
+        Warning::shared(self.arms.iter().map(|arm| &arm.warnings[..]))
     }
 
     /// Reads a study file and its cases.
@@ -134,13 +133,13 @@ fn manifest(
 ) -> StudyManifest {
     let stem = Path::new(study.name()).file_stem();
     let stem = stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let text = |name: &String| bases.get(name).map_or_else(String::new, |base| base.text().to_owned());
     let main = file.case.clone().unwrap_or_default();
-    let others = bases.keys().filter(|name| **name != main).map(|name| (name.clone(), text(name)));
+    let text = |(name, base): (&String, &Document)| (name.clone(), base.text().to_owned());
+    let mut cases: BTreeMap<String, String> = bases.iter().map(text).collect();
     let source = StudySource {
         study: study.text().to_owned(),
-        case: text(&main),
-        others: others.collect(),
+        case: cases.remove(&main).unwrap_or_default(),
+        others: cases,
         case_path: main,
     };
     let texts = std::iter::once(source.case.clone()).chain(source.others.values().cloned());
@@ -148,10 +147,9 @@ fn manifest(
     let arm =
         |(i, p): (usize, &Planned)| p.stored(format!("arms/{:02}-{}", i + 1, arms::slug(&p.draft.name)));
     let design = file.design.map(|kind| {
-        let of = |level: usize| planned.iter().find(|p| p.draft.role.level == level && !p.draft.role.fine);
         let cost_of = arms::cost_of(&file).unwrap_or_default();
         let steps = if file.steps.is_empty() {
-            of(0).map(|p| p.case.time.step).into_iter().collect()
+            planned.first().map(|p| p.case.time.step).into_iter().collect()
         } else {
             file.steps.clone()
         };

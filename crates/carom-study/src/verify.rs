@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use carom_record::question::Question;
-use carom_record::study::{Study, StudyManifest};
+use carom_record::study::{Arm, Study, StudyManifest};
 use carom_record::verification::{Row, SetUp, Verification};
 use carom_record::{Expect, Expectation, Machine, RecordError, Run, Source, Status, judge, now};
 use carom_run::case::Case;
@@ -177,14 +177,14 @@ impl Item {
                 std::fs::create_dir_all(&path).map_err(RecordError::io("create", &path))?;
                 of_arms(&plan.manifest).write(directory)?;
                 let arms = plan.arms.iter().zip(&plan.manifest.arms);
-                let unit = |(planned, arm): (&crate::PlannedArm, &carom_record::study::Arm)| Unit {
+                let units = arms.map(|(planned, arm)| Unit {
                     item,
                     name: format!("{name}, {}", arm.name),
                     directory: directory.join(&arm.directory),
                     case: bare(planned.case.clone(), whole),
                     source: plan.manifest.source_of(arm),
-                };
-                Ok(arms.map(unit).collect())
+                });
+                Ok(units.collect())
             }
         }
     }
@@ -230,9 +230,7 @@ impl Item {
                 set_up.runs = manifest.arms.len();
                 set_up.contact = study.rows.iter().any(|r| r.contact);
                 for (arm, found) in manifest.arms.iter().zip(&study.rows) {
-                    if found.status == Some(Status::Failed)
-                        && !stop_expected(&manifest, &arm.name, &arm.facts.expects)
-                    {
+                    if found.status == Some(Status::Failed) && !stop_expected(&manifest, arm) {
                         let reason = found.reason.as_deref().unwrap_or_default();
                         set_up.stopped.push(format!("\"{}\": {reason}", arm.name));
                     }
@@ -254,9 +252,10 @@ fn of_arms(manifest: &StudyManifest) -> StudyManifest {
 }
 
 /// Whether an expectation of the arm, or one of the study about the arm, depends on `stopped`.
-fn stop_expected(manifest: &StudyManifest, arm: &str, expects: &[Expect]) -> bool {
+fn stop_expected(manifest: &StudyManifest, arm: &Arm) -> bool {
+    let name = Some(arm.name.as_str());
     let about = |e: &Expect| {
-        Question::parse(&e.what).is_ok_and(|q| q.asks_whether_stopped() && q.arms().contains(&Some(arm)))
+        Question::parse(&e.what).is_ok_and(|q| q.asks_whether_stopped() && q.arms().contains(&name))
     };
-    expects.iter().any(Expect::asks_whether_stopped) || manifest.expects.iter().any(about)
+    arm.facts.expects.iter().any(Expect::asks_whether_stopped) || manifest.expects.iter().any(about)
 }

@@ -78,9 +78,6 @@ impl Verdict {
             let value = |side: usize| comparison?.sides[side].answer(records, Window::default()).ok();
             (value(0), value(1))
         };
-        let holds = |(left, right): (Option<f64>, Option<f64>)| {
-            left.zip(right).zip(comparison).map(|((l, r), c)| c.operator.holds(l, r))
-        };
         let (left, right) = sides(records);
         let decided: Vec<(f64, f64)> =
             members.iter().map(sides).filter_map(|(left, right)| left.zip(right)).collect();
@@ -96,7 +93,10 @@ impl Verdict {
             () => None,
         });
         let confirmed = || Confirmed {
-            count: decided.iter().filter(|(l, r)| holds((Some(*l), Some(*r))) == Some(true)).count(),
+            count: decided
+                .iter()
+                .filter(|(l, r)| comparison.is_some_and(|c| c.operator.holds(*l, *r)))
+                .count(),
             of: decided.len(),
             ratio: Spread::of(decided.iter().copied().map(ratio)),
         };
@@ -104,7 +104,7 @@ impl Verdict {
             claim: claim.clone(),
             left,
             right,
-            holds: holds((left, right)),
+            holds: left.zip(right).zip(comparison).map(|((l, r), c)| c.operator.holds(l, r)),
             ratio: left.zip(right).map(ratio).filter(|ratio| ratio.is_finite()),
             bound,
             ensemble: (decided.len() > 1).then(confirmed),

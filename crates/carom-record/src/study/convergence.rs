@@ -61,17 +61,13 @@ pub(super) fn converged_by(
 /// # Errors
 /// There is a single run.
 pub fn converged(sizes: &[f64], values: &[f64]) -> Result<Converged, Reason> {
-    let n = values.len().min(sizes.len());
-    if n < 2 {
+    let ([.., h2, h1], [.., f2, f1]) = (sizes, values) else {
         return Err("a single run gives no error estimate".into());
-    }
-    let f1 = values[n - 1];
-    let f2 = values[n - 2];
-    let r21 = sizes[n - 2] / sizes[n - 1];
-    if n == 2 {
+    };
+    let r21 = h2 / h1;
+    let ([.., h3, _, _], [.., f3, _, _]) = (sizes, values) else {
         return Ok(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
-    }
-    let f3 = values[n - 3];
+    };
     let range = [(f1 - f2).abs(), (f2 - f3).abs(), (f1 - f3).abs()].into_iter().fold(0.0, f64::max);
     if range == 0.0 {
         return Ok(Converged { uncertainty: 0.0, order: None });
@@ -80,8 +76,7 @@ pub fn converged(sizes: &[f64], values: &[f64]) -> Result<Converged, Reason> {
     if (f1 - f2).abs() <= SETTLED * range {
         return Ok(Converged { uncertainty: SAFE * range, order: None });
     }
-    let steps = [sizes[n - 3], sizes[n - 2], sizes[n - 1]];
-    let order = from_differences(steps, [f3 - f2, f2 - f1]).ok().filter(|p| *p > 0.0);
+    let order = from_differences([*h3, *h2, *h1], [f3 - f2, f2 - f1]).ok().filter(|p| *p > 0.0);
     let error = |p: f64| (f1 - f2).abs() / (r21.powf(p) - 1.0);
     let uncertainty = match order {
         Some(p) if p > REGULAR => SAFE * error(OF_A_JUMP).max(range),

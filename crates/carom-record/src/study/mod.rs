@@ -98,8 +98,7 @@ pub struct Study {
 impl Study {
     /// The warnings of all arms, each once, with the numbers of the arms that gave it.
     pub fn warnings(&self) -> Vec<(&Warning, Vec<usize>)> {
-        let given = self.rows.iter().enumerate();
-        Warning::shared(given.flat_map(|(arm, row)| row.warnings.iter().map(move |w| (arm, w))))
+        Warning::shared(self.rows.iter().map(|row| &row.warnings[..]))
     }
 
     /// The number of the recommended arm, if there is one.

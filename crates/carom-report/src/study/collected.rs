@@ -4,10 +4,11 @@
 use std::ops::Range;
 
 use carom_record::Run;
-use carom_record::metrics::{Overlay, contact_force, probe_columns};
+use carom_record::metrics::{Metric, Overlay, contact_force, probe_columns};
 use carom_record::study::Study;
 use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
+use maud::{Markup, html};
 
 use super::systems::Systems;
 use crate::digits::five;
@@ -16,6 +17,7 @@ use crate::measured::measured_label;
 use crate::noise;
 use crate::ordered::distinct;
 use crate::plot::{Curve, Drawn};
+use crate::text::Label;
 use crate::trace::ends_and_extremes;
 
 /// Columns shown besides those of the probes: name, label, caption.
@@ -162,8 +164,8 @@ pub(super) fn intervals(rows: usize, most: usize) -> impl Iterator<Item = Range<
 /// The unit of times, from the metrics of the arms; empty before any has finished.
 pub(super) fn time_unit(study: &Study) -> &str {
     let times = ["contact_start", "contact_duration", "apex_time"];
-    let metrics = study.rows.iter().flat_map(|row| &row.metrics);
-    metrics.filter(|m| times.contains(&&*m.name)).map(|m| m.unit.as_str()).next().unwrap_or_default()
+    let mut metrics = study.rows.iter().flat_map(|row| &row.metrics);
+    metrics.find(|metric| times.contains(&&*metric.name)).map_or("", |metric| &metric.unit)
 }
 
 /// The unit of time of all arms; empty if they have several.
@@ -174,6 +176,11 @@ pub(super) fn common_time(study: &Study) -> &str {
 /// A time with its unit.
 pub(super) fn in_time(study: &Study, value: f64) -> String {
     format!("{} {}", five(value), time_unit(study)).trim_end().to_owned()
+}
+
+/// The cells of a metric's name and unit.
+pub(super) fn cells_of(metric: &Metric) -> Markup {
+    html! { td title=(metric.definition) { code { (metric.name) } } td.unit { (Label(&metric.unit)) } }
 }
 
 /// Symbol and description of a column.

@@ -7,6 +7,7 @@ use carom_record::order::{self, MARGIN};
 use carom_record::study::{Refinement, Study, count, refined_keys, step};
 use maud::{Markup, html};
 
+use super::collected::cells_of;
 use super::settings::own_settings;
 use crate::digits::{five, three};
 use crate::document::labelled;
@@ -61,7 +62,7 @@ fn table(study: &Study, key: &str, group: &Refinement) -> Markup {
                 @for metric in metrics {
                     @let values = values(&metric.name);
                     tr {
-                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
+                        (cells_of(metric))
                         @for value in &values { td.n { (labelled(*value, five)) } }
                         @if enough { (observed(&group.steps, &values)) }
                     }

@@ -5,6 +5,7 @@ use carom_record::metrics::Metric;
 use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
+use super::collected::cells_of;
 use super::comparison::style_of;
 use super::systems::Systems;
 use super::trend;
@@ -163,7 +164,7 @@ pub(super) fn by_arm(
                 thead { tr { th { "Metric" } th { "Unit" } @for arm in part { th.n { (arm + 1) } } } }
                 @for metric in metrics {
                     tr {
-                        td title=(metric.definition) { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
+                        (cells_of(metric))
                         @for arm in part { td.n { (cell(*arm, metric)) } }
                     }
                 }

@@ -8,7 +8,7 @@ use carom_record::study::reference::{Established, Reference};
 use carom_record::study::{Study, step};
 use maud::{Markup, html};
 
-use super::collected::{in_time, time_unit};
+use super::collected::{cells_of, in_time, time_unit};
 use super::comparison::methods;
 use crate::digits::{count, five, three};
 use crate::document::{file, labelled, or_dash};
@@ -93,8 +93,7 @@ fn table(study: &Study, ranking: &Ranking) -> Markup {
         Some(h) => format!("Level {}: Δt = {}", level + 1, in_time(study, *h)),
         None => format!("Level {}", level + 1),
     };
-    let ranked = || ranking.levels.iter().flatten();
-    let is_ranked = |arm: usize| ranked().any(|ranked| ranked.arm == arm);
+    let is_ranked = |arm: usize| ranking.levels.iter().flatten().any(|ranked| ranked.arm == arm);
     let is_apart = |arm: usize| ranking.apart.iter().any(|apart| apart.arm == arm);
     let all = methods(study).into_iter().flat_map(|(_, arms)| arms);
     let without = all.filter(|arm| !is_ranked(*arm) && !is_apart(*arm));
@@ -193,7 +192,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
                 }
                 @for metric in metrics {
                     tr {
-                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
+                        (cells_of(metric))
                         @match study.standing(&metric.name) {
                             Ok(Established { value, uncertainty }) => {
                                 @let estimate = reference.estimate(&metric.name).ok();

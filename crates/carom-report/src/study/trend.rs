@@ -6,7 +6,7 @@ use carom_record::metrics::Metric;
 use carom_record::study::{Refinement, Study, count, refined_keys, scalar};
 use maud::{Markup, html};
 
-use super::collected::{common_time, time_unit};
+use super::collected::{cells_of, common_time, time_unit};
 use super::curves::Keys;
 use super::fit::Fit;
 use super::settings::own_settings;
@@ -298,8 +298,7 @@ pub(super) fn section(study: &Study) -> Markup {
                             @for (trend, label) in trends.iter().zip(&sweep.labels) {
                                 @if let Some(words) = trend.words(&metric.unit, sweep.unit) {
                                     tr {
-                                        td { code { (metric.name) } } td.unit { (Label(&metric.unit)) }
-                                        td { (Label(label)) } td { (Label(&words)) }
+                                        (cells_of(metric)) td { (Label(label)) } td { (Label(&words)) }
                                     }
                                 }
                             }
