@@ -42,8 +42,8 @@ fn at(scheme: &SchemeSpec, omega_dt: f64) -> [Option<f64>; 3] {
 pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let mut lines = Vec::new();
     let mut seen: Vec<&SchemeSpec> = Vec::new();
-    let arms = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, _)| !arm.role.fine);
-    for (arm, planned) in arms {
+    let arms = || plan.manifest.arms.iter().zip(&plan.arms);
+    for (arm, planned) in arms().filter(|(arm, _)| !arm.role.fine) {
         let scheme = &planned.case.time.scheme;
         if seen.contains(&scheme) || scheme.is_static() {
             continue;
@@ -63,7 +63,7 @@ pub(crate) fn write(plan: &Plan, directory: &Path) -> Result<(), RecordError> {
     let Some(found) = plan.arms.first().and_then(|arm| of_case(&arm.case)) else { return Ok(()) };
     // Arms that differ only in the step have the same springs, and most arms have none.
     let mut seen = BTreeSet::new();
-    let stiff = plan.manifest.arms.iter().zip(&plan.arms).filter(|(arm, planned)| {
+    let stiff = arms().filter(|(arm, planned)| {
         let name = if arm.role.fine { FINE_NAME } else { arm.method() };
         planned.case.contacts.iter().any(|c| c.enforcement == Enforcement::Penalty) && seen.insert(name)
     });

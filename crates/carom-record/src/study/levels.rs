@@ -29,7 +29,7 @@ impl Level {
 }
 
 /// The runs of a reference.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Levels {
     /// Levels of refinement, the finest last; for exact formulas, one level sampled from them.
     pub(super) all: Vec<Level>,

@@ -185,8 +185,11 @@ impl StudyManifest {
         Ok(run)
     }
 
-    /// Reads the record of an arm as [`Self::record`] does; none if it is damaged.
-    pub(super) fn intact(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
-        self.record(directory, arm).or_else(|error| if error.is_system() { Err(error) } else { Ok(None) })
+    /// The record of an arm that has finished, as [`Self::record`] reads it; none if it is damaged.
+    pub(super) fn finished(&self, directory: &Path, arm: &Arm) -> Result<Option<Run>, RecordError> {
+        match self.record(directory, arm) {
+            Err(error) if !error.is_system() => Ok(None),
+            record => Ok(record?.filter(|run| run.manifest.status == Status::Finished)),
+        }
     }
 }

@@ -123,12 +123,12 @@ pub fn standing(reference: Option<&Reference>, rows: &[Row], metric: &str) -> Re
 
 /// |m − r|, relative if r is not 0.
 pub fn error(value: f64, right: f64) -> f64 {
-    signed(value, right).abs()
+    relative(value - right, right).abs()
 }
 
-/// m − r, relative to |r| if r is not 0.
-fn signed(value: f64, right: f64) -> f64 {
-    if right == 0.0 { value } else { (value - right) / right.abs() }
+/// A difference from r, relative to |r| if r is not 0.
+fn relative(difference: f64, right: f64) -> f64 {
+    if right == 0.0 { difference } else { difference / right.abs() }
 }
 
 /// The data of a study that rankings are made from.
@@ -176,19 +176,19 @@ impl<'a> Ranks<'a> {
         }
         let count = (known.len() as f64).sqrt();
         let of = |row: &Row| {
-            let each = known.iter().map(|(name, right, _)| Some(signed(row.value(name)?, *right) / count));
+            let each =
+                known.iter().map(|(name, right, _)| Some(relative(row.value(name)? - right, *right) / count));
             let vector: Vec<f64> = each.collect::<Option<_>>()?;
             Some(Errors { error: product(&vector, &vector).sqrt(), vector, noise: None })
         };
-        let relative =
-            known.iter().map(|(_, right, off)| if *right == 0.0 { *off } else { (off / right).abs() });
+        let bounds = known.iter().map(|(_, right, off)| relative(*off, *right));
         let words = known.iter().map(|(name, right, _)| {
             if *right == 0.0 { format!("{name} (exactly 0)") } else { format!("error of {name}") }
         });
         let words = words.collect::<Vec<_>>().join(" and ");
         let measure = Measure {
             words: if known.len() > 1 { format!("root mean square of {words}") } else { words },
-            uncertainty: relative.fold(ROUND_OFF, f64::max),
+            uncertainty: bounds.fold(ROUND_OFF, f64::max),
             noise: None,
             left_out,
         };

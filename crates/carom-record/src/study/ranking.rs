@@ -128,16 +128,16 @@ impl Ranks<'_> {
 
     /// Gives the arms of a level their places, and sorts them.
     fn placed(&self, mut ranked: Vec<Ranked>, measured: &Measured) -> Vec<Ranked> {
-        let better = |i: usize| {
+        let place = |own: &Ranked| {
             let mut ahead: Vec<usize> = Vec::new();
-            for other in ranked.iter().filter(|other| measured.is_better(other.arm, ranked[i].arm)) {
+            for other in ranked.iter().filter(|other| measured.is_better(other.arm, own.arm)) {
                 if !ahead.iter().any(|arm| self.rows[*arm].is_twin(&self.rows[other.arm])) {
                     ahead.push(other.arm);
                 }
             }
-            ahead.len()
+            1 + ahead.len()
         };
-        let places: Vec<usize> = (0..ranked.len()).map(|i| 1 + better(i)).collect();
+        let places: Vec<usize> = ranked.iter().map(place).collect();
         ranked.iter_mut().zip(places).for_each(|(ranked, place)| ranked.place = place);
         let name = |ranked: &Ranked| &self.manifest.arms[ranked.arm].name;
         let errors = |a: &Ranked, b: &Ranked| a.error.total_cmp(&b.error).then(a.cost.total_cmp(&b.cost));

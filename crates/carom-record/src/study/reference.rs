@@ -74,7 +74,7 @@ pub struct Estimate {
 }
 
 /// Reference that arms are compared with: runs at several levels of refinement, or exact formulas.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
     /// Description in words.
     pub what: String,
@@ -90,9 +90,8 @@ pub struct Reference {
 impl Reference {
     /// Creates a reference from levels of decreasing steps, the finest last.
     pub fn of_levels(what: String, levels: Vec<Level>) -> Self {
-        let runs = Levels { all: levels, checks: Vec::new(), exact: false };
-        let mut reference =
-            Self { what, runs, averaged: Vec::new(), known: Vec::new(), uncertainties: BTreeMap::new() };
+        let runs = Levels { all: levels, ..Levels::default() };
+        let mut reference = Self { what, runs, ..Self::default() };
         let columns = reference.columns().into_iter();
         reference.uncertainties = columns.map(|c| (c.to_owned(), reference.of_column(c))).collect();
         reference
@@ -146,8 +145,8 @@ impl Reference {
         let sampled = Trajectory { times, columns, forces: forces(&history), metrics: known };
         let what = "the exact formulas of [exact]".to_owned();
         let levels = vec![Level::single(1.0, sampled)];
-        let runs = Levels { all: levels, checks: Vec::new(), exact: true };
-        Some(Self { runs, ..Self::of_levels(what, Vec::new()) })
+        let runs = Levels { all: levels, exact: true, ..Levels::default() };
+        Some(Self { what, runs, ..Self::default() })
     }
 
     /// Value of a metric with its uncertainty.

@@ -10,7 +10,7 @@ use super::manifest::StudyManifest;
 use super::reference::{Level, Reference};
 use super::trajectory::Trajectory;
 use crate::metrics;
-use crate::{Reason, RecordError, Run, Status};
+use crate::{Reason, RecordError, Run};
 
 /// Impact law of the contact nodes, as a part of the description of a reference: while contact
 /// nodes have mass, the law belongs to the mathematical problem.
@@ -102,8 +102,7 @@ impl StudyManifest {
             let mut phases = Vec::new();
             for run in self.runs_of(i) {
                 let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
-                let record = self.intact(directory, self.run(run))?;
-                if let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) {
+                if let Some(run) = self.finished(directory, self.run(run))? {
                     striker = striker.or_else(|| metrics::striker(&run.history).map(str::to_owned));
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
@@ -126,10 +125,7 @@ impl StudyManifest {
         let Some(last) = arms.last() else { return Ok(None) };
         let mut checks = Vec::new();
         for arm in self.arms.iter().filter(|arm| arm.role.check) {
-            let record = self.intact(directory, arm)?;
-            let Some(run) = record.filter(|run| run.manifest.status == Status::Finished) else {
-                return Ok(None);
-            };
+            let Some(run) = self.finished(directory, arm)? else { return Ok(None) };
             checks.push(self.trajectory(&run, striker.as_deref()));
         }
         let mut reference = Reference::of_levels(String::new(), levels);

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::arm::step;
 use super::ensemble::Spread;
-use super::ranking::{Confidence, Ranking};
+use super::ranking::Ranking;
 use super::{Row, Study, Verdict};
 use crate::files::write_unsynced;
 use crate::metrics::Metric;
@@ -191,7 +191,7 @@ impl Study {
             measure: ranking.measure.as_ref().ok().map(|measure| measure.words.as_str()),
             recommended: verdict.map(|verdict| name(verdict.arm)),
             error: verdict.and_then(|verdict| Some(ranked().find(|r| r.arm == verdict.arm)?.interval)),
-            confidence: verdict.map(|verdict| verdict.confidence),
+            confidence: verdict.map(|verdict| verdict.confidence.word()),
             tied: verdict.map_or(&[], |verdict| &verdict.alike),
             reasons: ranking.verdict.as_ref().map_or_else(|why| why, |verdict| &verdict.reasons),
             doubts: verdict.map_or(&[], |verdict| &verdict.confidence_reasons),
@@ -209,7 +209,7 @@ struct Stated<'a> {
     recommended: Option<&'a str>,
     /// Ends of the interval of the error.
     error: Option<[f64; 2]>,
-    confidence: Option<Confidence>,
+    confidence: Option<&'a str>,
     tied: &'a [String],
     reasons: &'a [String],
     doubts: &'a [String],

@@ -7,8 +7,6 @@
 //! recommended   of the candidates within 10 % of the lowest cost, the one with the smallest error
 //! ```
 
-use serde::Serialize;
-
 use super::design::Goal;
 use super::digits::short;
 use super::measure::Measured;
@@ -23,8 +21,7 @@ const EQUAL_ERROR: f64 = 1.05;
 const CLEAR: f64 = 1.5;
 
 /// Confidence in a recommendation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Confidence {
     /// Another arm of the same cost may be as good.
     Low,
