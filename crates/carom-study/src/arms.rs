@@ -127,11 +127,6 @@ fn levels(methods: &[Draft], file: &StudyFile) -> Vec<Draft> {
     methods.iter().flat_map(|m| (0..count).map(move |level| (m, level))).map(at).collect()
 }
 
-/// Whether the reference is computed: it is requested, and no arm has its name.
-pub(crate) fn computes_reference(file: &StudyFile, drafts: &[Draft]) -> bool {
-    file.reference.as_deref() == Some(FINE_NAME) && drafts.iter().all(|d| d.name != FINE_NAME)
-}
-
 /// Step and mesh factor of a level of the computed reference.
 struct Level {
     /// Number of steps to the end.

@@ -2,21 +2,21 @@
 //! given for one of them is ignored, and an exact reference has formulas.
 
 use carom_record::study::design::Kind;
-use carom_run::case::{Case, Problem};
+use carom_run::case::Problem;
 use toml_edit::Value;
 
-use crate::arms::Draft;
 use crate::file::StudyFile;
+use crate::resolved::Planned;
 
-/// Adds the problems of a study with a goal; `drafts` with their cases are the arms and the runs of
+/// Adds the problems of a study with a goal; `planned` are the arms and the runs of
 /// the computed reference.
-pub(crate) fn check(file: &StudyFile, drafts: &[(&Draft, &Case)], problems: &mut Vec<Problem>) {
+pub(crate) fn check(file: &StudyFile, planned: &[Planned], problems: &mut Vec<Problem>) {
     if file.goal.is_none() {
         return;
     }
-    ends(drafts, problems);
+    ends(planned, problems);
     ignored_steps(file, problems);
-    let has_formulas = drafts.iter().any(|(_, case)| !case.exact.is_empty());
+    let has_formulas = planned.iter().any(|arm| !arm.case.exact.is_empty());
     if file.reference.as_deref() == Some("exact") && !has_formulas {
         let why = "`reference = \"exact\"` compares with the formulas of [exact] in the case";
         let help = "add [exact] to the case, or write `reference = \"fine\"`";
@@ -25,13 +25,13 @@ pub(crate) fn check(file: &StudyFile, drafts: &[(&Draft, &Case)], problems: &mut
 }
 
 /// Runs of different lengths differ by what happens in the rest, and in cost.
-fn ends(drafts: &[(&Draft, &Case)], problems: &mut Vec<Problem>) {
-    let Some((first, case)) = drafts.first() else { return };
-    let differs = |other: &Case| {
-        let step = case.time.step.max(other.time.step);
-        (other.time.end - case.time.end).abs() > step
+fn ends(planned: &[Planned], problems: &mut Vec<Problem>) {
+    let Some(Planned { draft: first, case, .. }) = planned.first() else { return };
+    let differs = |other: &&Planned| {
+        let step = case.time.step.max(other.case.time.step);
+        (other.case.time.end - case.time.end).abs() > step
     };
-    if let Some((draft, other)) = drafts.iter().find(|(_, other)| differs(other)) {
+    if let Some(Planned { draft, case: other, .. }) = planned.iter().find(differs) {
         let what = format!(
             "\"{}\" ends at {}, and \"{}\" at {}",
             draft.name, other.time.end, first.name, case.time.end

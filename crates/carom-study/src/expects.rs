@@ -9,15 +9,16 @@ use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
 use crate::names::quoted;
+use crate::resolved::Planned;
 
 /// Arms and measured data whose names a study can contain.
 struct Known<'a> {
-    arms: &'a [(&'a str, &'a Case)],
+    arms: &'a [Planned],
     overlays: &'a [Overlay],
 }
 
 /// Adds the problems of a study's measured data, expectations and claims.
-pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
+pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Problem>) {
     let known = Known { arms, overlays: &file.overlays };
     overlays(&known, problems);
     for (i, expect) in file.expects.iter().enumerate() {
@@ -47,8 +48,7 @@ pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec
 fn overlays(known: &Known, problems: &mut Vec<Problem>) {
     for (i, Overlay { name, column, .. }) in known.overlays.iter().enumerate() {
         let twice = known.overlays[..i].iter().any(|other| other.name == *name);
-        let of_case =
-            known.arms.iter().any(|(_, case)| case.overlays.iter().any(|other| other.name == *name));
+        let of_case = known.arms.iter().any(|arm| arm.case.overlays.iter().any(|other| other.name == *name));
         if twice || of_case {
             let why = if twice {
                 "figures and metrics identify measured data by name"
@@ -58,7 +58,7 @@ fn overlays(known: &Known, problems: &mut Vec<Problem>) {
             let what = format!("two [[overlay]] are named \"{name}\"");
             problems.push(Problem::new(format!("overlay[{i}].name"), what, why, "rename one of them"));
         }
-        let columns: Vec<String> = known.arms.iter().flat_map(|(_, case)| columns(case)).collect();
+        let columns: Vec<String> = known.arms.iter().flat_map(|arm| columns(&arm.case)).collect();
         if !columns.contains(column) {
             let what = format!("the records of the arms will have no column `{column}`");
             let why = "measured data are compared with a column of history.csv";
@@ -117,11 +117,13 @@ impl Known<'_> {
 
     /// Whether there are measured data of this name, in the study or in the cases of the arms.
     fn measured(&self, name: &str, arm: Option<&str>) -> Result<(), Reason> {
-        for (arm, case) in self.arms_of(arm)? {
+        for arm in self.arms_of(arm)? {
             let overlays = self.overlays.iter().map(|overlay| overlay.name.as_str());
-            let names: Vec<&str> = overlays.chain(case.overlays.iter().map(|o| o.name.as_str())).collect();
+            let names: Vec<&str> =
+                overlays.chain(arm.case.overlays.iter().map(|o| o.name.as_str())).collect();
             if !names.contains(&name) {
                 let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+                let arm = &arm.draft.name;
                 return Err(format!(
                     "arm \"{arm}\" has no measured data `{name}`; the tables [[overlay]] are: {known}"
                 )
@@ -132,24 +134,27 @@ impl Known<'_> {
     }
 
     fn column(&self, column: &str, arm: Option<&str>) -> Result<(), Reason> {
-        for (name, case) in self.arms_of(arm)? {
+        for Planned { draft, case, .. } in self.arms_of(arm)? {
             let columns = columns(case);
             if !columns.iter().any(|own| own == column) {
                 let meant = meant(column, &columns);
-                return Err(
-                    format!("the record of arm \"{name}\" will have no column `{column}`: {meant}").into()
-                );
+                return Err(format!(
+                    "the record of arm \"{}\" will have no column `{column}`: {meant}",
+                    draft.name
+                )
+                .into());
             }
         }
         Ok(())
     }
 
     /// The arms of a quantity: the one it names, or all.
-    fn arms_of(&self, arm: Option<&str>) -> Result<Vec<&(&str, &Case)>, Reason> {
-        let found: Vec<_> = self.arms.iter().filter(|(name, _)| arm.is_none_or(|arm| arm == *name)).collect();
+    fn arms_of(&self, arm: Option<&str>) -> Result<Vec<&Planned>, Reason> {
+        let found: Vec<_> =
+            self.arms.iter().filter(|own| arm.is_none_or(|arm| arm == own.draft.name)).collect();
         match arm {
             Some(arm) if found.is_empty() => {
-                let known = quoted(self.arms.iter().map(|(name, _)| *name));
+                let known = quoted(self.arms.iter().map(|own| own.draft.name.as_str()));
                 Err(format!("no arm is named \"{arm}\"; the arms are: {known}").into())
             }
             _ => Ok(found),

@@ -5,6 +5,7 @@ use carom_record::study::groups::is_stress;
 use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
+use crate::resolved::Planned;
 
 /// Columns that a goal compares: a test of the name of a column, and what is missing without one.
 struct Compared {
@@ -37,7 +38,7 @@ fn compared(goal: Goal) -> Option<Compared> {
 }
 
 /// Adds the problem that an arm, or the exact solution, has nothing that the goal compares.
-pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec<Problem>) {
+pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Problem>) {
     let Some(goal) = file.goal else { return };
     let Some(Compared { is_column, missing, help }) = compared(goal) else { return };
     let is_recorded = |case: &Case| {
@@ -45,12 +46,13 @@ pub(crate) fn check(file: &StudyFile, arms: &[(&str, &Case)], problems: &mut Vec
         has_contact && history_columns(case).iter().any(|column| is_column(&column.name))
     };
     let what = format!("nothing is recorded that the goal `{}` compares", goal.word());
-    if let Some((name, _)) = arms.iter().find(|(_, case)| !is_recorded(case)) {
+    if let Some(arm) = arms.iter().find(|arm| !is_recorded(&arm.case)) {
+        let name = &arm.draft.name;
         problems.push(Problem::new("goal", what, format!("{missing} in the case of \"{name}\""), help));
         return;
     }
     let is_exact = file.reference.as_deref() == Some("exact") && goal != Goal::Friction;
-    let Some((_, case)) = arms.first().filter(|_| is_exact) else { return };
+    let Some(Planned { case, .. }) = arms.first().filter(|_| is_exact) else { return };
     if !case.exact.keys().any(|column| is_column(column)) {
         let what = format!("the exact solution has nothing that the goal `{}` compares", goal.word());
         let help = "add a formula for it to [exact] of the case, or write `reference = \"fine\"`";

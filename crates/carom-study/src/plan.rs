@@ -85,11 +85,9 @@ impl Plan {
         checked.read(&drafts)?;
         checked.end()?;
         let planned = checked.arms(drafts)?;
-        let known: Vec<(&str, &Case)> = planned.iter().map(|p| (p.draft.name.as_str(), &p.case)).collect();
-        expects::check(&file, &known, &mut problems);
-        goals::check(&file, &known, &mut problems);
-        let drafts: Vec<(&Draft, &Case)> = planned.iter().map(|p| (&p.draft, &p.case)).collect();
-        comparable::check(&file, &drafts, &mut problems);
+        expects::check(&file, &planned, &mut problems);
+        goals::check(&file, &planned, &mut problems);
+        comparable::check(&file, &planned, &mut problems);
         checked.problems(&problems)?;
         checked.end()?;
         let members = checked.members(&planned)?;

@@ -10,7 +10,7 @@ use carom_run::case::{Case, CaseError, Diagnostic, Document, Problem, read};
 use carom_run::{Setup, warnings};
 
 use crate::arms::{self, Draft};
-use crate::file::StudyFile;
+use crate::file::{FINE_NAME, StudyFile};
 
 /// An arm whose case is valid.
 pub(crate) struct Planned {
@@ -121,13 +121,14 @@ impl<'a> Checked<'a> {
 
     /// The arms, then the runs of the computed reference, whose step depends on those of all arms.
     pub(crate) fn arms(&mut self, drafts: Vec<Draft>) -> Result<Vec<Planned>, CaseError> {
-        let computed = arms::computes_reference(self.file, &drafts);
+        let is_asked = self.file.reference.as_deref() == Some(FINE_NAME);
+        let is_computed = is_asked && drafts.iter().all(|draft| draft.name != FINE_NAME);
         let count = drafts.len();
         let mut planned = Vec::new();
         for draft in drafts {
             planned.extend(self.planned(draft)?);
         }
-        if computed && planned.len() == count {
+        if is_computed && planned.len() == count {
             let step = planned.iter().map(|p| p.case.time.step).fold(f64::INFINITY, f64::min);
             let is_static = planned.iter().all(|p| p.case.time.scheme.is_static());
             match arms::fine(self.file, &planned[0].case, step, is_static) {

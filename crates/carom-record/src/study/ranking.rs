@@ -81,8 +81,10 @@ impl Ranks<'_> {
     }
 
     fn with_window(&self, goal: Goal, window: usize) -> Ranking {
-        let mut apart: Vec<Apart> = self.arms().filter_map(|(arm, _)| self.apart(arm)).collect();
-        let measured = match self.measured(goal, window) {
+        let measured = self.measured(goal, window);
+        let apart = |(arm, _)| self.apart(arm, measured.as_ref().ok());
+        let apart: Vec<Apart> = self.arms().filter_map(apart).collect();
+        let measured = match measured {
             Ok(measured) => measured,
             Err(why) => {
                 let reasons = vec![format!("the reference establishes no measure of this goal: {why}")];
@@ -90,9 +92,6 @@ impl Ranks<'_> {
                 return Ranking { goal, measure: Err(why), levels, apart, verdict: Err(reasons) };
             }
         };
-        let unknown = self.arms().filter(|(arm, _)| !apart.iter().any(|apart| apart.arm == *arm));
-        let unknown: Vec<Apart> = unknown.filter_map(|(arm, _)| self.unknown(arm, &measured.runs)).collect();
-        apart.extend(unknown);
         let count = self.manifest.arms.iter().map(|arm| arm.role.level + 1).max().unwrap_or(0);
         let level = |level: usize| {
             let sound = self
@@ -145,18 +144,11 @@ impl Ranks<'_> {
         ranked
     }
 
-    /// An arm that has finished without an error in the measure.
-    fn unknown(&self, arm: usize, runs: &[Option<Errors>]) -> Option<Apart> {
-        let lacks = |run: &usize| self.rows[*run].status == Some(Status::Finished) && runs[*run].is_none();
-        let has_none = self.manifest.runs_of(arm).iter().any(lacks);
-        has_none.then(|| Apart { arm, why: "it lacks a quantity of the measure".to_owned() })
-    }
-
-    /// Why an arm is set apart, if it is.
-    fn apart(&self, arm: usize) -> Option<Apart> {
-        let of = |run: usize| {
-            let row = &self.rows[run];
-            let member = self.manifest.run(run).role.member.zip(self.manifest.ensemble.as_ref());
+    /// An arm that is set apart, with the reason; none if it is not.
+    fn apart(&self, arm: usize, measured: Option<&Measured>) -> Option<Apart> {
+        let of = |run: &usize| {
+            let row = &self.rows[*run];
+            let member = self.manifest.run(*run).role.member.zip(self.manifest.ensemble.as_ref());
             let which = member.map_or_else(String::new, |(of, all)| format!("{}: ", all.name(&of.member)));
             let why = match row.value("energy_created") {
                 _ if row.status == Some(Status::Failed) => {
@@ -167,7 +159,13 @@ impl Ranks<'_> {
             };
             Some(format!("{which}{why}"))
         };
-        let why = self.manifest.runs_of(arm).into_iter().find_map(of)?;
+        let lacks = |run: &usize| {
+            let is_unknown = measured.is_some_and(|measured| measured.runs[*run].is_none());
+            is_unknown && self.rows[*run].status == Some(Status::Finished)
+        };
+        let runs = self.manifest.runs_of(arm);
+        let unknown = || runs.iter().any(lacks).then(|| "it lacks a quantity of the measure".to_owned());
+        let why = runs.iter().find_map(of).or_else(unknown)?;
         Some(Apart { arm, why })
     }
 
