@@ -210,9 +210,10 @@ pub(crate) fn fine(file: &StudyFile, case: &Case, step: f64, is_static: bool) ->
     Some(levels.iter().map(run).chain(checks).collect())
 }
 
-/// The members of the ensemble of arm number `arm`, except for itself, with the changes that make them from the
-/// arm's case. Sides cannot be swapped against a rigid primary: a case that has no others has no
-/// swapped members. The meshes of the reference are its own, and so is what an arm itself sets.
+/// The members of the ensemble of arm number `arm`, except for itself, with the changes that make
+/// them from the arm's case. Sides cannot be swapped against a rigid primary: a case that has no
+/// others has no swapped members. The meshes of the reference are its own, and so is what an arm
+/// itself sets.
 pub(crate) fn members(ensemble: &Ensemble, arm: usize, draft: &Draft, case: &Case) -> Vec<Draft> {
     let swaps: Vec<String> = case
         .contacts

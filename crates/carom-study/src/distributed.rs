@@ -23,10 +23,7 @@ use crate::run::{Outcome, conclude, create};
 /// # Errors
 /// Input/output or system error, and a study with steps of matched cost: [`plan_settled`].
 pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
-    let manifest = &plan.manifest;
-    if let Some(arm) = manifest.arms.iter().find(|arm| manifest.by_cost(arm)) {
-        return Err(StudyError::Unsettled { arm: arm.name.clone() });
-    }
+    settled(&plan.manifest, directory)?;
     create(plan, directory)
 }
 

@@ -129,7 +129,6 @@ pub(crate) fn settle(
     observe: &mut dyn FnMut(&Event),
     stop: &AtomicBool,
 ) -> Result<bool, StudyError> {
-    let Some(design) = manifest.design.clone() else { return Ok(true) };
     let arms_with = |property: &dyn Fn(&Arm) -> bool| {
         (0..manifest.arms.len()).filter(|i| property(&manifest.arms[*i])).collect::<Vec<_>>()
     };
@@ -137,7 +136,8 @@ pub(crate) fn settle(
     if others.is_empty() {
         return Ok(true);
     }
-    let anchors = arms_with(&|arm| !arm.role.fine && arm.role.method.as_ref() == Some(&design.cost_of));
+    let matched_to = manifest.design.as_ref().map(|design| &design.cost_of);
+    let anchors = arms_with(&|arm| !arm.role.fine && arm.role.method.as_ref() == matched_to);
     let not_ended = |i: &usize| !manifest.has_ended(directory, &manifest.arms[*i]);
     let waiting = anchors.iter().copied().filter(not_ended).collect();
     let one = |i: usize, progress: OnStep| compute(manifest, directory, i, threads(jobs), progress, stop);
@@ -243,7 +243,7 @@ fn pilot(
             let cost = match computed(steps, &path) {
                 Ok(ended) if ended.status == Status::Stopped => return Ok(ended),
                 Ok(_) => cost_of(&path)?,
-                // The step is not possible, for example above the stable step of an explicit scheme.
+                // Not possible, for example above the stable step of an explicit scheme.
                 Err(StudyError::Arm { source: RunError::Case(_), .. }) => None,
                 Err(error) => return Err(error),
             };

@@ -118,6 +118,6 @@ fn kind(file: &Path, fast: bool) -> Result<Option<Kind>, CaseError> {
     if !wanted(&case.expects, fast) {
         return Ok(None);
     }
-    let source = Source { text: document.text().to_owned(), sets: Vec::new(), ..Source::default() };
+    let source = Source { text: document.text().to_owned(), ..Source::default() };
     resolved(document.name(), document.text(), &[]).map(|(case, _)| Some(Kind::Case(Box::new(case), source)))
 }

@@ -46,7 +46,7 @@ pub enum Goal {
 
 impl Goal {
     /// Names in study files, with the measure that each goal ranks by.
-    pub const NAMES: [(&str, Goal, &str); 6] = [
+    const NAMES: [(&str, Goal, &str); 6] = [
         ("energy", Goal::Energy, "largest energy that time integrator and contact dissipated or created"),
         ("force", Goal::Force, "deviation of the contact force, averaged over a short time"),
         ("stress", Goal::Stress, "deviation of the stresses of the probes, averaged over a short time"),

@@ -50,7 +50,7 @@ pub struct StudyManifest {
     pub design: Option<Design>,
     /// The goal of the ranking.
     pub goal: Option<Goal>,
-    /// The required accuracy, if given: see [`Self::accuracy`].
+    /// The required accuracy, if given.
     pub accuracy: Option<f64>,
     /// Time over which forces and stresses are averaged, if given.
     pub window: Option<f64>,
@@ -136,11 +136,6 @@ impl StudyManifest {
     /// The arms that are off their budget.
     pub fn off_budget(&self) -> impl Iterator<Item = &Arm> {
         self.arms.iter().filter(|arm| self.is_off_budget(arm))
-    }
-
-    /// The required accuracy: an error of 0.05 by default.
-    pub fn accuracy(&self) -> f64 {
-        self.accuracy.unwrap_or(0.05)
     }
 
     /// The case file of an arm and its changes.

@@ -17,6 +17,8 @@ use super::row::Row;
 const EQUAL_COST: f64 = 1.1;
 /// Factor within which errors are equal.
 const EQUAL_ERROR: f64 = 1.05;
+/// Required accuracy of the goal `cost`, unless it is given.
+const ACCURACY: f64 = 0.05;
 /// Factor by which an error is clearly smaller than that of another arm.
 const CLEAR: f64 = 1.5;
 
@@ -80,8 +82,8 @@ impl<'a> Field<'a> {
 
     /// The accuracy that an arm must have, if one is required.
     fn required(&self) -> Option<f64> {
-        let manifest = self.measured.manifest;
-        if self.goal == Goal::Cost { Some(manifest.accuracy()) } else { manifest.accuracy }
+        let least_work = (self.goal == Goal::Cost).then_some(ACCURACY);
+        self.measured.manifest.accuracy.or(least_work)
     }
 
     /// Whether no arm has a smaller error at no more cost.

@@ -34,7 +34,14 @@ pub(super) fn section(study: &Study) -> Markup {
             (table(study, ranking))
             p.small { (PLACES) " With all digits: " (file("ranking.csv")) "." }
         }
-        (apart(study, ranking))
+        @if !ranking.apart.is_empty() {
+            p { "Set apart, and neither ranked nor recommended:" }
+            ul {
+                @for apart in &ranking.apart {
+                    li { (Label(&study.rows[apart.arm].name)) ": " (typeset(&apart.why)) "." }
+                }
+            }
+        }
         (other_goals(study))
         @match &study.reference {
             Some(reference) => (reference_values(study, reference)),
@@ -128,20 +135,6 @@ fn table(study: &Study, ranking: &Ranking) -> Markup {
             @if study.manifest.ensemble.is_some() { "Error: the largest of the ensemble. " }
             @if is_any_off { "!: more than 10 % off the budget. " }
             @if !without.is_empty() { "Not ranked (metric not available): " (without.join("; ")) "." }
-        }
-    }
-}
-
-/// Arms that are set apart, with the reasons.
-fn apart(study: &Study, ranking: &Ranking) -> Markup {
-    html! {
-        @if !ranking.apart.is_empty() {
-            p { "Set apart, and neither ranked nor recommended:" }
-            ul {
-                @for apart in &ranking.apart {
-                    li { (Label(&study.rows[apart.arm].name)) ": " (typeset(&apart.why)) "." }
-                }
-            }
         }
     }
 }

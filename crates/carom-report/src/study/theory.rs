@@ -56,9 +56,15 @@ pub(super) fn plot(study: &Study) -> Option<Plot> {
         "Properties of the schemes for an undamped oscillator of angular frequency ω; methods with the scheme of another \
          one have its curve.{lines}{springs} For a node constrained by a multiplier ωΔt → ∞, and only ρ∞ matters."
     );
-    let name = "theory".into();
-    let x_label = "ωΔt".into();
-    Some(Plot { name, caption, x_label, log: [true, false], across: 1, panes, ..Plot::default() })
+    Some(Plot {
+        name: "theory".into(),
+        caption,
+        x_label: "ωΔt".into(),
+        log: [true, false],
+        across: 1,
+        panes,
+        ..Plot::default()
+    })
 }
 
 /// Frequencies of the model times the longest step, with labels, and times the shortest.
