@@ -35,10 +35,9 @@ use carom_algebra::sums::{sum, sums};
 use super::finish::Finish;
 use super::increments::Increments;
 use super::tied_mass::TiedMass;
-use super::watch::{active, approach, depth};
+use super::watch::{approach, depth};
 use super::{Accepted, StepReport, Stepper};
-use crate::friction_state::each_slip;
-use crate::ledger::{book_contact_forces, book_materials};
+use crate::ledger::book_materials;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stability::{SAFETY, lumped};
@@ -314,18 +313,7 @@ impl Explicit {
         *longest = if is_behind { longest.max(dt) } else { dt };
 
         state.take_pairs(&scratch.pairings);
-        state.f_contact.fill(0.0);
-        for (k, p) in active(&scratch.pairings) {
-            scratch.rows[k].row(p).add_to(scratch.pairings[k].pairs[p].lambda, &mut state.f_contact);
-        }
-        if model.has_friction() {
-            let mut friction = std::mem::take(&mut state.f_friction);
-            friction.clear();
-            friction.resize(state.a.len(), 0.0);
-            each_slip(model, state, |_, _, traction, row| row.add_to(traction, &mut friction));
-            state.f_contact.iter_mut().zip(&friction).for_each(|(force, part)| *force += part);
-            state.f_friction = friction;
-        }
+        scratch.add_up(model, state);
         let State { a, v, f_contact, .. } = state;
         let contact = |i: usize| self.inverse_mass[i] * f_contact[i];
         let tied = scratch.ties.as_mut().map(|ties| {
@@ -340,7 +328,6 @@ impl Explicit {
                 v[k] = before[first + k] + 0.5 * dt * a[k];
             }
         });
-        book_contact_forces(model, state);
         (state.half_step.velocity, state.half_step.dt) = (velocity, dt);
         Ok(())
     }

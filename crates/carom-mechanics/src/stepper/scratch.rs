@@ -5,7 +5,8 @@ use carom_contact::{Along, Pairing, Rows};
 
 use super::forward::Moved;
 use super::tied_mass::TiedMass;
-use crate::model::LoadsAt;
+use crate::model::{LoadsAt, Model};
+use crate::state::State;
 
 /// Buffers of a step.
 #[derive(Debug)]
@@ -62,6 +63,38 @@ impl Scratch {
             loaded: Vec::new(),
             loads: LoadsAt::default(),
             ties: None,
+        }
+    }
+
+    /// Writes the forces of the last impulses into a state: on its nodes, and on the secondary side
+    /// of each contact. They act along the rows that the impulses were found with: where a pair has
+    /// gone on to another facet since, its row has another direction.
+    pub(crate) fn add_up(&self, model: &Model, state: &mut State) {
+        state.f_contact.fill(0.0);
+        state.contact_forces.fill([0.0; 3]);
+        let count = self.places.len();
+        let mut forces = self.acting.iter().zip(&self.impulses);
+        for ((row, force), (contact, _)) in forces.by_ref().take(count).zip(&self.places) {
+            row.add_to(-force, &mut state.f_contact);
+            let normal = row.normal();
+            (0..3).for_each(|i| state.contact_forces[*contact][i] += force * normal[i]);
+        }
+        if !model.has_friction() {
+            return;
+        }
+        state.f_friction.clear();
+        state.f_friction.resize(state.y.len(), 0.0);
+        let mut on_sides = vec![[0.0; 3]; model.contacts.len()];
+        for ((row, force), kind) in forces.zip(&self.kinds[count..]) {
+            row.add_to(-force, &mut state.f_friction);
+            let Kind::Tangential { of, .. } = *kind else { continue };
+            let (contact, _) = self.places[of];
+            let along = row.normal();
+            (0..3).for_each(|i| on_sides[contact][i] += force * along[i]);
+        }
+        state.f_contact.iter_mut().zip(&state.f_friction).for_each(|(force, part)| *force += part);
+        for (force, friction) in state.contact_forces.iter_mut().zip(on_sides) {
+            (0..3).for_each(|i| force[i] += friction[i]);
         }
     }
 }

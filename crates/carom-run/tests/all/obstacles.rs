@@ -516,3 +516,42 @@ tolerance = 1e-13
         }
     }
 }
+
+/// A block that slides over the rounded tops of a rough floor, on nodes that meet another piece of
+/// it when they close than while they were open.
+const RIDGES: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 2.0, young = 400.0, poisson = 0.3 }]
+[[body]]
+name = "block"
+material = "m"
+element = "T6"
+mass = "lumped"
+mesh = { shape = "rectangle", min = [-2.0, 0.2], max = [0.0, 0.8], cells = [12, 4] }
+velocity = [3.0, -1.0]
+gravity = [0.0, -10.0]
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = { polyline = { points = [[4.0, 0.0], [3.2, 0.12], [2.4, 0.0], [1.6, 0.12], [0.8, 0.0], [0.0, 0.12], [-0.8, 0.0], [-1.6, 0.12], [-2.4, 0.0], [-3.2, 0.12], [-4.0, 0.0]], radius = 0.005 } }
+[time]
+end = 0.3
+step = 1e-3
+scheme = { kind = "central-difference" }
+"#;
+
+#[test]
+fn impulses_of_an_explicit_scheme_change_the_momentum() {
+    let mut sim = simulation(RIDGES, &[""; 0]);
+    let before = momenta(&sim, &sim.state().v);
+    let weight = 2.0 * 2.0 * 0.6 * 10.0;
+    while !sim.finished() {
+        sim.step().unwrap();
+        let now = momenta(&sim, &sim.state().v);
+        let impulse = sim.state().impulse();
+        let pulled = weight * sim.state().time;
+        let missing = [now[0] - before[0] - impulse[0], now[1] - before[1] - impulse[1] + pulled];
+        assert!(missing.iter().all(|m| m.abs() < 1e-11), "{}: {missing:?}", sim.state().time);
+    }
+    assert!(sim.state().impulse()[0] < -0.1, "{:?}", sim.state().impulse());
+}
