@@ -253,9 +253,13 @@ pub(crate) fn read(document: &Document, folder: &Path, problems: &mut Vec<Proble
     let named =
         file.grid.is_empty() && !file.arms.is_empty() && file.arms.iter().all(|arm| arm.case.is_some());
     let is_unread = document.has("arm") && file.arms.is_empty();
-    if !document.has("case") && !named && !is_unread {
+    let is_refined =
+        file.reference.as_deref() == Some(FINE_NAME) && file.arms.iter().all(|arm| arm.name != FINE_NAME);
+    if !document.has("case") && !is_unread && (!named || is_refined) {
+        let why =
+            if named { "the computed reference refines it" } else { "a study compares runs of one case" };
         let help = "add `case = \"impact.toml\"`, relative to this file";
-        problems.push(Problem::new("", "the study has no `case`", "a study compares runs of one case", help));
+        problems.push(Problem::new("", "the study has no `case`", why, help));
     }
     design(document, &file, problems);
     file

@@ -118,7 +118,9 @@ pub(crate) fn check(file: &StudyFile, drafts: &[Draft], problems: &mut Vec<Probl
         let path = format!("claim[{i}].compare");
         match Comparison::parse(&claim.compare) {
             Ok(comparison) => {
-                for arm in comparison.arms().into_iter().filter(|arm| !exists(arm)) {
+                let is_computed =
+                    |arm: &str| file.reference.as_deref() == Some(arm) && arm == file::FINE_NAME;
+                for arm in comparison.arms().into_iter().filter(|arm| !exists(arm) && !is_computed(arm)) {
                     let what = format!("no arm is named \"{arm}\"");
                     problems.push(Problem::new(&path, what, known(), "use one of them"));
                 }

@@ -201,6 +201,16 @@ fn wrong_study_files() {
     assert!(first("[grid]\n\"time.step\" = 1e-3\n").what.contains("list"));
     let found = first("[[arm]]\nname = \"a\"\n[[claim]]\ntext = \"t\"\ncompare = 'apex of \"b\" > 1'\n");
     assert_eq!((found.line, found.what.as_str()), (6, "no arm is named \"b\""));
+    let (_folder, path) = folder("");
+    // Arms may have cases of their own, but the computed reference refines that of the study.
+    let own = |reference: &str| {
+        let arm = "[[arm]]\nname = \"a\"\ncase = \"bar.toml\"\n";
+        fs::write(&path, format!("{reference}{arm}")).unwrap();
+        Plan::read(&path)
+    };
+    assert!(own("").is_ok());
+    let message = own("reference = \"fine\"\n").unwrap_err().to_string();
+    assert!(message.contains("no `case`") && message.contains("computed reference"), "{message}");
     let (_folder, path) = folder("[[arm]]\nname = \"a\"\n");
     fs::write(&path, "case = \"none.toml\"\n[[arm]]\nname = \"a\"\n").unwrap();
     let message = Plan::read(&path).unwrap_err().to_string();
@@ -313,7 +323,8 @@ fn a_reference_refines_its_mesh_and_an_ensemble_repeats_every_arm() {
     let (folder, path) = folder(
         "goal = \"energy\"\nreference = \"fine\"\n[fine]\nrefine = 2\nmesh = [1, 2]\n\
          [ensemble]\nphases = 2\nmesh = [1, 2]\n[[arm]]\nname = \"Hu\"\nset = { \"time.scheme\" = { kind = \"hu\" } }\n\
-         [[arm]]\nname = \"CH\"\n[[claim]]\ntext = \"t\"\ncompare = 'energy_lost of \"Hu\" > energy_lost of \"CH\"'\n",
+         [[arm]]\nname = \"CH\"\n[[claim]]\ntext = \"t\"\ncompare = 'energy_lost of \"Hu\" > energy_lost of \"CH\"'\n\
+         [[claim]]\ntext = \"u\"\ncompare = 'energy_lost of \"Hu\" > energy_lost of \"fine\"'\n",
     );
     let plan = Plan::read(&path).unwrap();
     let arms = &plan.manifest.arms;
@@ -331,6 +342,8 @@ fn a_reference_refines_its_mesh_and_an_ensemble_repeats_every_arm() {
     let study = start(&plan, &out, 2, &mut |_| (), &AtomicBool::new(false)).unwrap().study;
     let confirmed = study.verdicts[0].ensemble.as_ref().unwrap();
     assert_eq!((confirmed.count, confirmed.of), (4, 4));
+    // A claim may name the computed reference.
+    assert_eq!(study.verdicts[1].right, study.rows[3].value("energy_lost"));
     let reference = study.reference.as_ref().unwrap();
     assert!(reference.refines_mesh() && reference.what.contains("2 members"));
     assert_eq!(study.spread(0, "energy_lost").unwrap().count(), 4);
