@@ -23,7 +23,10 @@ use crate::run::{Outcome, conclude, create};
 /// # Errors
 /// Input/output or system error, and a study with steps of matched cost: [`plan_settled`].
 pub fn plan(plan: &Plan, directory: &Path) -> Result<(), StudyError> {
-    settled(&plan.manifest, directory)?;
+    let manifest = &plan.manifest;
+    if let Some(arm) = manifest.arms.iter().find(|arm| manifest.by_cost(arm)) {
+        return Err(StudyError::Unsettled { arm: arm.name.clone() });
+    }
     create(plan, directory)
 }
 

@@ -4,7 +4,7 @@
 use carom_record::Reason;
 use carom_record::metrics::Overlay;
 use carom_record::question::{Quantity, Question, Series, column_metric_names, metric_names};
-use carom_record::study::{Comparison, Refined};
+use carom_record::study::{Comparison, Sought};
 use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
@@ -24,8 +24,8 @@ pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Probl
     for (i, expect) in file.expects.iter().enumerate() {
         let asked = match (&expect.order, &expect.deviation) {
             (Some(order), _) => order.quantity(),
-            (None, Some(_)) => Series::parse(&expect.what).map(Refined::Column),
-            (None, None) => Question::parse(&expect.what).map(Refined::Number),
+            (None, Some(_)) => Series::parse(&expect.what).map(Sought::Column),
+            (None, None) => Question::parse(&expect.what).map(Sought::Number),
         };
         if let Err(what) = asked.and_then(|asked| known.answers(&asked)) {
             let key = if expect.order.is_some() { "of" } else { "what" };
@@ -81,10 +81,10 @@ fn meant(given: &str, names: &[impl AsRef<str>]) -> String {
 
 impl Known<'_> {
     /// Whether the records will have what a quantity is computed from.
-    fn answers(&self, asked: &Refined) -> Result<(), Reason> {
+    fn answers(&self, asked: &Sought) -> Result<(), Reason> {
         match asked {
-            Refined::Number(question) => self.question(question),
-            Refined::Column(series) => self.series(series),
+            Sought::Number(question) => self.question(question),
+            Sought::Column(series) => self.series(series),
         }
     }
 

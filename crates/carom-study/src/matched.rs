@@ -146,15 +146,16 @@ pub(crate) fn settle(
         return Ok(false);
     }
     let one = |i: usize, progress: OnStep| {
-        let is_anchor = |arm: &&Arm| arm.role.level == manifest.arms[i].role.level;
-        let anchor = anchors.iter().map(|i| &manifest.arms[*i]).find(is_anchor);
-        let budget = anchor.map_or(Ok(None), |arm| cost_of(&directory.join(&arm.directory)))?;
+        let is_of_level = |arm: &&Arm| arm.role.level == manifest.arms[i].role.level;
+        let anchor = anchors.iter().map(|i| &manifest.arms[*i]).find(is_of_level);
+        let budget = anchor.map_or(Ok(None), |arm| counted_cost(&directory.join(&arm.directory)))?;
         pilot(manifest, directory, i, budget, progress, stop)
     };
     side_by_side(others.iter().copied().collect(), jobs, &one, observe, stop)?;
     let mut all_settled = true;
     for i in others {
         let pilot = Pilot::read(&folder(manifest, directory, i))?;
+        // A stop may have left an accepted trial without the record of its arm.
         match pilot.accepted().filter(|_| directory.join(&manifest.arms[i].directory).exists()) {
             Some(trial) => {
                 adopt(manifest, i, trial.steps)?;
@@ -174,7 +175,7 @@ fn folder(manifest: &StudyManifest, directory: &Path, i: usize) -> PathBuf {
 }
 
 /// The counted cost of a run; none if it did not reach its end.
-fn cost_of(path: &Path) -> Result<Option<f64>, RecordError> {
+fn counted_cost(path: &Path) -> Result<Option<f64>, RecordError> {
     let run = Manifest::read(path)?;
     Ok(cost(&run.counters, run.facts.stepping).filter(|_| run.status == Status::Finished))
 }
@@ -220,7 +221,10 @@ fn pilot(
     let folder = folder(manifest, directory, i);
     fs::create_dir_all(&folder).map_err(RecordError::io("create", &folder))?;
     let mut pilot = Pilot::read(&folder)?;
-    pilot.budget = pilot.budget.or(budget);
+    if pilot.budget.is_none() && budget.is_some() {
+        pilot.budget = budget;
+        pilot.write(&folder)?;
+    }
     // Starts or resumes a run of that many steps.
     let mut computed = |steps: u64, path: &Path| -> Result<Ended, StudyError> {
         let done = if path.join("manifest.json").is_file() {
@@ -242,7 +246,7 @@ fn pilot(
             let path = folder.join((pilot.trials.len() + 1).to_string());
             let cost = match computed(steps, &path) {
                 Ok(ended) if ended.status == Status::Stopped => return Ok(ended),
-                Ok(_) => cost_of(&path)?,
+                Ok(_) => counted_cost(&path)?,
                 // Not possible, for example above the stable step of an explicit scheme.
                 Err(StudyError::Arm { source: RunError::Case(_), .. }) => None,
                 Err(error) => return Err(error),

@@ -60,7 +60,7 @@ use design::{Goal, MemberOf};
 use ensemble::{Ensemble, Spread};
 pub use manifest::{StudyManifest, StudySource};
 use measure::standing;
-pub use orders::{Refined, Refinement, refined_keys};
+pub use orders::{Refinement, Sought, refined_keys};
 use ranking::{Ranking, Ranks};
 use reference::{Established, Reference, Trajectory};
 pub use row::Row;

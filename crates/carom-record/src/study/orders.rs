@@ -85,8 +85,8 @@ fn others<'a>(arm: &'a Arm, key: &str) -> impl Iterator<Item = &'a str> {
     arm.case_path.as_deref().into_iter().chain(sets)
 }
 
-/// A quantity under refinement.
-pub enum Refined {
+/// A quantity that an expectation is about.
+pub enum Sought {
     /// A number of a record.
     Number(Question),
     /// A column of a record.
@@ -98,16 +98,16 @@ impl OrderOf {
     ///
     /// # Errors
     /// What is wrong with its text.
-    pub fn quantity(&self) -> Result<Refined, Reason> {
+    pub fn quantity(&self) -> Result<Sought, Reason> {
         match Question::parse(&self.of) {
             // A single word that is not a metric is a column.
             Ok(Expression::Quantity(Quantity::Metric(name, None)))
                 if !name.contains(':') && !question::metric_names().contains(&name.as_str()) =>
             {
-                Series::parse(&name).map(Refined::Column)
+                Series::parse(&name).map(Sought::Column)
             }
-            Ok(question) => Ok(Refined::Number(question)),
-            Err(_) => Series::parse(&self.of).map(Refined::Column),
+            Ok(question) => Ok(Sought::Number(question)),
+            Err(_) => Series::parse(&self.of).map(Sought::Column),
         }
     }
 }
@@ -119,10 +119,10 @@ pub(super) fn needs(manifest: &StudyManifest) -> Needs {
         let arms = manifest.arms.iter().map(|a| a.name.as_str());
         match expect.order.as_ref().map(OrderOf::quantity) {
             None => needs.questions.extend(Question::parse(&expect.what)),
-            Some(Ok(Refined::Number(question))) => {
+            Some(Ok(Sought::Number(question))) => {
                 needs.questions.extend(arms.map(|arm| question.of_arm(arm)));
             }
-            Some(Ok(Refined::Column(series))) => needs.series.extend(arms.map(|arm| series.of_arm(arm))),
+            Some(Ok(Sought::Column(series))) => needs.series.extend(arms.map(|arm| series.of_arm(arm))),
             Some(Err(_)) => {}
         }
     }
@@ -204,24 +204,24 @@ fn observed(
     let quantity = order.quantity()?;
     // Values of arms with their times; a number is one value without a time.
     let of_arms = |arms: &[&str]| match &quantity {
-        Refined::Number(question) => {
+        Sought::Number(question) => {
             let value = |arm: &&str| Ok(vec![question.of_arm(arm).answer(records, window)?]);
             Ok((Vec::new(), arms.iter().map(value).collect::<Result<_, Reason>>()?))
         }
-        Refined::Column(series) => {
+        Sought::Column(series) => {
             let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(arm)).collect();
             question::common(&columns, records, window)
         }
     };
     let finest = || of_arms(&[name(two), name(three)]);
     match &quantity {
-        Refined::Number(_) => {
+        Sought::Number(_) => {
             if let Some(exact) = order.exact {
                 let (_, values) = finest()?;
                 return from_errors([h1, h2], [values[0][0] - exact, values[1][0] - exact]);
             }
         }
-        Refined::Column(series) => {
+        Sought::Column(series) => {
             if let Some(deviation) = deviation(expect, manifest, three, series, norm)? {
                 let (times, columns) = finest()?;
                 let error = |column: usize| deviation.of(&times, &columns[column]);
@@ -232,8 +232,8 @@ fn observed(
     let apart = |a: &[f64], b: &[f64]| {
         let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         match quantity {
-            Refined::Number(_) => differences[0],
-            Refined::Column(_) => norm.of(&differences),
+            Sought::Number(_) => differences[0],
+            Sought::Column(_) => norm.of(&differences),
         }
     };
     if let Some(reference) = reference {

@@ -188,7 +188,7 @@ fn confidence<'a>(field: &Field<'a>, chosen: &'a Ranked) -> (Confidence, Vec<Str
         reasons.push(why);
     };
     if field.rivals(chosen).next().is_none() {
-        at_most(Confidence::Medium, "no other method was run at this cost".to_owned());
+        at_most(Confidence::Medium, "no other method with other results was run at this cost".to_owned());
     }
     let is_settled = |r: &Ranked| {
         let is_same = || field.measured.is_within(EQUAL_ERROR - 1.0, chosen.arm, r.arm);

@@ -207,4 +207,14 @@ mod tests {
         assert!(x.len() <= 6400 && x.is_sorted() && x[0] == 0.0 && x.last() == Some(&99_999.0));
         assert!(y.contains(&9.0) && y.contains(&-5.0));
     }
+
+    #[test]
+    fn intervals_follow_each_other_and_leave_no_row_out() {
+        for (rows, most) in [(0, 5), (3, 5), (5, 5), (17, 5), (6401, 3200)] {
+            let found: Vec<usize> = intervals(rows, most).flatten().collect();
+            assert_eq!(found, (0..rows).collect::<Vec<_>>());
+            assert_eq!(intervals(rows, most).count(), rows.min(most));
+            assert!(intervals(rows, most).all(|interval| !interval.is_empty()));
+        }
+    }
 }

@@ -45,55 +45,44 @@ fn front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Error against cost, as ranked: one curve with markers per method, through the points of its
-/// arms, and another one of the arms that created much energy; the Pareto front; and the
-/// recommended arm. None for a study without a goal.
+/// ranked arms; the Pareto front; and the recommended arm. None for a study without a goal.
 pub(super) fn plot(study: &Study) -> Option<Plot> {
     let ranking = study.ranking.as_ref()?;
     let uncertainty = ranking.measure.as_ref().ok()?.uncertainty;
     let ranked = |arm: &usize| ranking.levels.iter().flatten().find(|ranked| ranked.arm == *arm);
     let chosen = study.recommended();
     let mut curves = Vec::new();
-    let mut sound_points = Vec::new();
+    let mut all_points = Vec::new();
     for (name, arms) in methods(study) {
         let style = arms.first().map_or(0, |arm| style_of(study, *arm));
-        let all = arms.iter().filter_map(ranked).filter(|ranked| ranked.cost > 0.0);
-        let (unsound, sound): (Vec<&Ranked>, Vec<&Ranked>) =
-            all.partition(|ranked| study.rows[ranked.arm].is_unsound());
-        for (ranked, apart) in [(sound, false), (unsound, true)] {
-            if ranked.is_empty() {
-                continue;
-            }
-            let points: Vec<(f64, f64)> = ranked.iter().map(|r| (r.cost, r.error.max(SMALL))).collect();
-            let (x, y) = points.iter().copied().unzip();
-            let ring = ranked.iter().position(|ranked| !apart && chosen == Some(ranked.arm));
-            if !apart {
-                sound_points.extend(points);
-            }
-            curves.push(Curve {
-                label: if apart { format!("{name}, creates energy") } else { name.to_owned() },
-                style,
-                x,
-                y,
-                intervals: ranked.iter().map(|ranked| ranked.interval).collect(),
-                drawn: Drawn::Marked,
-                apart,
-                chosen: ring.is_some(),
-                ring,
-                ..Curve::default()
-            });
+        let of_method: Vec<&Ranked> =
+            arms.iter().filter_map(ranked).filter(|ranked| ranked.cost > 0.0).collect();
+        if of_method.is_empty() {
+            continue;
         }
+        let points: Vec<(f64, f64)> = of_method.iter().map(|r| (r.cost, r.error.max(SMALL))).collect();
+        let (x, y) = points.iter().copied().unzip();
+        let ring = of_method.iter().position(|ranked| chosen == Some(ranked.arm));
+        all_points.extend(points);
+        curves.push(Curve {
+            label: name.to_owned(),
+            style,
+            x,
+            y,
+            intervals: of_method.iter().map(|ranked| ranked.interval).collect(),
+            drawn: Drawn::Marked,
+            chosen: ring.is_some(),
+            ring,
+            ..Curve::default()
+        });
     }
     if curves.is_empty() {
         return None;
     }
-    let front = front(&sound_points);
+    let front = front(&all_points);
     let marks = [
         said_if(front.len() > 1, " Broad line: Pareto front."),
         said_if(curves.iter().any(|curve| curve.chosen), " Ring: recommended arm."),
-        said_if(
-            curves.iter().any(|curve| curve.apart),
-            " Grey: arms that created energy; they do not affect the axes.",
-        ),
     ];
     let pane = Pane {
         curves,

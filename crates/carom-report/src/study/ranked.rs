@@ -17,7 +17,7 @@ use crate::text::{Label, typeset};
 
 /// How places are given.
 const PLACES: &str = "The place of an arm is one plus the number of arms of its level that are distinguishably better: \
-    every solution within the uncertainty of the reference is nearer to them. Intervals may overlap; identical arms count once. Cost is counted, in evaluations of the internal forces.";
+    every solution within the uncertainty of the reference is nearer to them. Intervals may overlap; identical arms (see the warnings) count once. Cost is counted, in evaluations of the internal forces.";
 
 /// Orders above it are not those of a scheme.
 const HIGHEST: f64 = 4.0;

@@ -9,7 +9,7 @@ use crate::document::file;
 use crate::text::Prose;
 
 const HASHES: &str = "Input hash: BLAKE3 of the case and the settings of the arm. Record hash: BLAKE3 of \
-    `history.csv` and `contact.csv`; the same version on the same platform gives the same. Cycles and fallbacks of the \
+    `history.csv` and `contact.csv`; of a finished arm, the same version on the same platform gives the same. Cycles and fallbacks of the \
     solver are logged in `log.jsonl` of the arm.";
 
 /// Files that a study directory may contain.
