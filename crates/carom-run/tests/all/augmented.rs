@@ -34,6 +34,7 @@ fn apart(a: &Simulation, b: &Simulation) -> [f64; 2] {
 /// From the same state in every step: over many steps, schemes with little damping amplify the
 /// tolerances of both. A step that one of them bisected has the answer of shorter steps.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn every_step_is_that_of_multipliers() {
     for (k, scheme) in SCHEMES.into_iter().enumerate() {
         // The search for friction contains that for pressures.

@@ -45,6 +45,7 @@ fn collision(case: &str, sets: &[&str]) -> [f64; 4] {
 }
 
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn two_discs_conserve_momenta_and_lose_what_is_booked() {
     for sets in [
         &[][..],
@@ -79,6 +80,7 @@ fn two_discs_part_with_the_energy_of_the_start_after_an_elastic_impact() {
 
 /// What a late hand-over might create beyond what the nodes that open afterwards can lose, is owed.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn the_energy_that_an_elastic_impact_does_not_restore_is_owed() {
     for step in ["2.5e-3", "3.5e-3", "7e-3", "1.4e-2"] {
         let step = format!("time.step={step}");

@@ -11,6 +11,7 @@ use super::common::{finish, simulation};
 /// velocity, whichever side is secondary. At the ends of the tables coefficients of the pressure
 /// gain and lose their partners within a step.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn friction_over_a_joint_takes_no_more_than_mu_times_the_weight() {
     let joint = |element: &str, cells: usize, sides: [[&str; 2]; 2]| {
         let [[first, on_first], [second, on_second]] = sides;

@@ -67,6 +67,7 @@ fn pieces_of_one_body_move_like_bodies() {
 
 /// With a pressure field, which the later piece carries, without friction and with it.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn pieces_of_one_body_press_on_average_like_bodies() {
     for (speed, mortar) in [("0", r#"method = "mortar""#), ("0.06", r#"method = "mortar", mu = 0.2"#)] {
         let across = |body: String| body.replace(r#""0"]"#, &format!(r#""if(X < 0, {speed}, 0)"]"#));
@@ -83,6 +84,7 @@ fn pieces_of_one_body_press_on_average_like_bodies() {
 /// meet has no choice of what else to press on. When the first one moves slowly all nodes stick at
 /// first, with slips that are round-off.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn pieces_of_one_body_rub_like_bodies() {
     assert!((rub_like_bodies("0.06") / -1.87e-4 - 1.0).abs() < 0.01);
     assert!(rub_like_bodies("0.02") < 0.0);
@@ -152,6 +154,7 @@ fn a_piece_of_a_body_rests_on_another_one() {
 
 /// Before the ring touches itself, and after.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn a_pinched_ring_moves_like_half_of_it_on_a_plane() {
     for method in ["node-to-segment", "mortar"] {
         let method_set = format!("contact.fold.method={method}");

@@ -121,6 +121,7 @@ fn pieces_of_one_body_move_like_bodies() {
 }
 
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn pieces_of_one_body_rub_like_bodies() {
     let folder = tempfile::tempdir().unwrap();
     let velocity =

@@ -340,6 +340,7 @@ newton = {{ tolerance = 1e-12 }}
 /// Where all of a contact slips, t = μp at every node, whatever the vibrations of the body, so that
 /// J_T = μ J_N.
 #[test]
+#[ignore = "takes seconds: .ci/nightly"]
 fn every_node_of_a_spinning_ball_has_the_force_of_slip() {
     let text = include_str!("../../../../cases/space/spinning-ball.toml");
     let mut sim = simulation(text, &["time.end=0.04", "newton.tolerance=1e-13"]);
