@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 use carom_contact::{FrictionState, Pair, Point, Rows};
 use carom_solid::Configuration;
 
+use crate::contact::constraints::Constraints;
 use crate::ledger::{book_contact_forces, book_kinetic};
 use crate::linear::system::System;
 use crate::model::{LoadsAt, Model};
@@ -130,11 +131,26 @@ pub fn start(
     }
     contact_forces_into(model, &mut state, &gaps);
     book_contact_forces(model, &mut state);
+    if inertia == Inertia::Free {
+        jump(model, &mut state, system)?;
+    }
     state.carried = Carried::at_start(&state.contact_forces);
     book_kinetic(model, &mut state);
     state.ledger.potential = model.potential(&state.y);
     state.ledger.begin();
     Ok(state)
+}
+
+/// The jumps of velocities, divided by the step, for the contact forces with which a run goes on.
+/// Nodes without mass have none.
+fn jump(model: &Model, state: &mut State, system: &mut System) -> Result<(), Rejected> {
+    if state.f_contact.iter().all(|force| *force == 0.0) || model.massless.contains(&true) {
+        return Ok(());
+    }
+    let forces: Vec<f64> = state.f_contact.iter().map(|force| -force).collect();
+    state.jumps = vec![0.0; model.dofs()];
+    system.mass_with(model, &Constraints::none(model.dimension))?;
+    Ok(system.solve(model, [&forces, &[]], &mut state.jumps, &mut Vec::new())?)
 }
 
 /// Evaluates the forces of penalty springs; returns their energy.

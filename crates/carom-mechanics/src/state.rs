@@ -212,6 +212,8 @@ pub struct State {
     pub v: Vec<f64>,
     /// Algorithmic accelerations: carried, never recomputed from the balance.
     pub a: Vec<f64>,
+    /// M⁻¹GᵀP/Δt of the impulses of the last step that are not in `a`; empty where all are.
+    pub jumps: Vec<f64>,
     /// Internal forces at `y`.
     pub f_internal: Vec<f64>,
     /// Loads at `y` without gravity, for the next step.
@@ -273,6 +275,7 @@ impl State {
             always("positions", &mut self.y),
             always("velocities", &mut self.v),
             always("accelerations", &mut self.a),
+            may_lack("jumps of velocities", &mut self.jumps),
             always("internal forces", &mut self.f_internal),
             always("loads", &mut self.f_external),
             always("contact forces", &mut self.f_contact),
@@ -400,6 +403,7 @@ impl State {
         ] {
             vector.resize(y.len(), 0.0);
         }
+        self.jumps.clear();
         self.f_contact.fill(0.0);
         self.f_external.clone_from(f_external);
         self.f_friction.clone_from(f_friction);

@@ -75,6 +75,7 @@ impl Stepper for Implicit {
     ) -> Result<Accepted, Rejected> {
         let previous = state.previous.as_ref().filter(|previous| previous.dt == dt);
         let mut next = work.copy(state);
+        next.jumps.clear();
         let factor = self.carried;
         carried::change_step(&mut next, factor, dt);
         let mut report = StepReport::default();

@@ -134,6 +134,11 @@ impl Stepper for Impulsive {
         equations.stage.acceleration.value_into(&solved.at.increment, &mut next.a);
         impulses.release(&mut next.v, shares.velocity);
         impulses.release(&mut next.a, -shares.acceleration);
+        next.jumps.clear();
+        if shares.acceleration != 0.0 {
+            next.jumps.resize(next.a.len(), 0.0);
+            impulses.release(&mut next.jumps, 1.0 / dt);
+        }
         next.f_internal.clone_from(&solved.forces.internal);
         next.f_external.clone_from(&solved.forces.loads);
         let loads = next.f_external.clone();

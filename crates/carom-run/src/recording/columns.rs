@@ -1,6 +1,8 @@
 //! Values of the columns of `history.csv`, in the order of `columns.rs` of `carom-case`, which has
 //! their names.
 
+use std::borrow::Cow;
+
 use carom_contact::{FrictionState, Pair, Rows};
 use carom_mechanics::model::Model;
 use carom_mechanics::{Depths, GridReport, Simulation, State, each_slip};
@@ -130,7 +132,7 @@ pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<
         probe.values(
             &model.parts,
             &model.reference,
-            [&state.y, &state.v, &state.a],
+            [&state.y, &state.v, &accelerations(state)],
             state.materials.past(0.0).memory,
             &mut row,
         );
@@ -181,10 +183,18 @@ impl Since {
     }
 }
 
+/// Accelerations, with the velocity jumps of impulses that do not enter those of the scheme.
+fn accelerations(state: &State) -> Cow<'_, [f64]> {
+    if state.jumps.is_empty() {
+        return Cow::Borrowed(&state.a);
+    }
+    state.a.iter().zip(&state.jumps).map(|(a, jump)| a + jump).collect()
+}
+
 /// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext.
 fn reactions(model: &Model, state: &State) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
-    model.mass.multiply_into(&state.a, &mut force);
+    model.mass.multiply_into(&accelerations(state), &mut force);
     for i in 0..force.len() {
         force[i] += state.f_internal[i] - model.gravity[i] - state.f_external[i];
     }

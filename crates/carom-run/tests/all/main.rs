@@ -45,6 +45,7 @@ mod pressing;
 mod prisms;
 mod probe;
 mod quantity;
+mod reactions;
 mod rebound;
 mod reduce;
 mod restart;

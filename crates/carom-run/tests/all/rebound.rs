@@ -1,6 +1,7 @@
 //! Newton's coefficient of restitution against wave solutions, in moving frames, and along the
 //! normal of a contact with friction.
 
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use carom_record::metrics::{of_rebound, of_run};
@@ -39,10 +40,15 @@ fields_every = 0
 
 pub(super) fn record(text: &str, sets: &[&str]) -> Run {
     let folder = tempfile::tempdir().unwrap();
-    let directory = folder.path().join("run");
-    let source = Source { text: text.to_owned(), sets: Vec::new(), ..Source::default() };
-    run(&case(text, sets), source, &directory, 1, &mut |_| {}, &AtomicBool::new(false)).unwrap();
-    Run::open(&directory).unwrap()
+    record_in(&folder.path().join("run"), text, sets)
+}
+
+/// Runs a case into a folder.
+pub(super) fn record_in(directory: &Path, text: &str, sets: &[&str]) -> Run {
+    let sets_in_source = sets.iter().map(|set| (*set).to_owned()).collect();
+    let source = Source { text: text.to_owned(), sets: sets_in_source, ..Source::default() };
+    run(&case(text, sets), source, directory, 1, &mut |_| {}, &AtomicBool::new(false)).unwrap();
+    Run::open(directory).unwrap()
 }
 
 fn restitution(run: &Run) -> Option<f64> {

@@ -1,0 +1,78 @@
+//! Columns of supports and ties against the momentum of the bodies.
+
+use carom_record::Run;
+
+use super::rebound::{record, record_in};
+
+const DROP: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }]
+[[body]]
+name = "plate"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.25], cells = [4, 1] }
+[[body]]
+name = "block"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.25], max = [1.0, 1.25], cells = [4, 4] }
+velocity = [0.0, -1.0]
+[[support]]
+name = "ground"
+on = ["plate.bottom"]
+fix = ["x", "y"]
+[[contact]]
+name = "strike"
+secondary = "block.bottom"
+primary = "plate.top"
+[time]
+end = 0.5
+step = 1e-3
+scheme = { kind = "moreau-jean", theta = 0.5 }
+[output]
+fields_every = 0
+"#;
+
+const SCHEMES: [&str; 2] = [
+    "time.scheme={ kind = \"moreau-jean\", theta = 0.5 }",
+    "time.scheme={ kind = \"nonsmooth-generalized-alpha\", rho_inf = 0.8 }",
+];
+
+fn column<'a>(run: &'a Run, name: &str) -> &'a [f64] {
+    run.column(name).unwrap()
+}
+
+/// What the ground gives is the change of the momentum of both bodies, also where impulses do not
+/// enter the accelerations of the scheme.
+#[test]
+fn reactions_change_the_momentum() {
+    for scheme in SCHEMES {
+        let run = record(DROP, &[scheme]);
+        let reaction: f64 = column(&run, "ground.reaction_y").iter().skip(1).map(|force| 1e-3 * force).sum();
+        let momentum = column(&run, "momentum_y");
+        let change = momentum[momentum.len() - 1] - momentum[0];
+        assert!(change > 1.5 && (reaction / change - 1.0).abs() < 0.02, "{scheme}: {reaction} {change}");
+    }
+}
+
+/// A block of the weight 2 at rest, also in the row of the start.
+#[test]
+fn the_reaction_of_a_body_at_rest_is_its_weight() {
+    let folder = tempfile::tempdir().unwrap();
+    let rest = folder.path().join("rest");
+    let heavy = ["body.block.velocity=[0.0, 0.0]", "body.block.gravity=[0.0, -2.0]"];
+    let supports = r#"support=[{ name = "ground", on = ["plate.bottom"], fix = ["x", "y"] }, { on = ["block.left"], fix = ["x"] }]"#;
+    let statics = r#"time={ end = 1.0, step = 1.0, scheme = { kind = "static" } }"#;
+    record_in(&rest, DROP, &[heavy[0], heavy[1], supports, statics]);
+    for scheme in SCHEMES {
+        let initial = format!("initial.from={rest:?}");
+        let run = record(
+            DROP,
+            &["body.block.gravity=[0.0, -2.0]", "body.block.velocity=[0.0, 0.0]", supports, &initial, scheme],
+        );
+        for reaction in column(&run, "ground.reaction_y") {
+            assert!((reaction - 2.0).abs() < 1e-3, "{scheme}: {reaction}");
+        }
+    }
+}
