@@ -205,7 +205,8 @@ impl Surfaces {
         let facing = |area: &Area| -area.normal.dot(&load.force);
         let best = around.clone().map(|(_, area)| facing(area)).fold(0.0, f64::max);
         let part = |(facet, area): (&Facet, &Area)| {
-            let share = if best > 0.0 { (2.0 * facing(area) / best).clamp(0.0, 1.0) } else { 1.0 };
+            // Walls that lean over what the body stands on are not loaded.
+            let share = if best > 0.0 { (4.0 * facing(area) / best - 2.0).clamp(0.0, 1.0) } else { 1.0 };
             let place = facet.nodes.iter().position(|n| *n == node).unwrap_or_default();
             share * area.parts[place]
         };

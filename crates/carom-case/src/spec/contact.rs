@@ -183,7 +183,7 @@ pub struct FrictionSpec {
     pub decay: Option<f64>,
     /// Largest tangential stress (Tresca friction): a node slips against this stress times its area
     /// in the reference configuration if μ times its normal force is larger, or if `mu` is not
-    /// given.
+    /// given. The secondary side must not have sharp edges, except in mortar contact.
     #[key(Number(POSITIVE), unit = "stress", example = "1e3")]
     pub shear: Option<f64>,
     /// Stiffness of the tangential spring of a node that sticks, as `stiffness`. With enforcement =

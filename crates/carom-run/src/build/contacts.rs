@@ -12,9 +12,8 @@ use carom_contact::{
     Obstacle, Penalty, Unilateral,
 };
 use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction};
-use carom_solid::FacetShape;
 
-use super::areas::consistent_weights;
+use super::areas::{consistent_weights, has_edge};
 use super::between_sides::{Bodies, Which, longest, without};
 use super::branching::branching;
 use super::given::in_space_and_time;
@@ -91,7 +90,7 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
     };
     let rubbing = &kinematics.secondary()[..kinematics.rubbing()];
     let stick = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
-    let mut friction = friction(case, spec, rubbing, reference, &facets)?;
+    let mut friction = friction(case, spec, rubbing, reference, &secondary)?;
     if let Some(friction) = &mut friction {
         if let Some(shear) = spec.friction.shear {
             // Coefficients of a pressure have the whole area, which leaves none for single nodes.
@@ -216,7 +215,7 @@ fn friction(
     spec: &ContactSpec,
     nodes: &[usize],
     reference: &[f64],
-    facets: &[(FacetShape, Vec<Vec<usize>>)],
+    secondary: &Side,
 ) -> Result<Option<Friction>, Problem> {
     let FrictionSpec { mu, mu_dynamic, decay, shear, .. } = &spec.friction;
     if !spec.friction.exists() {
@@ -225,8 +224,17 @@ fn friction(
     let read = |mu| in_space_and_time(case, mu, &spec.path("mu"));
     let stick = mu.as_ref().map(read).transpose()?;
     let d = case.dimension;
+    if shear.is_some() && spec.method != Method::Mortar && has_edge(secondary, reference) {
+        return Err(Problem::new(
+            spec.path("shear"),
+            format!("side {} has sharp edges", spec.secondary),
+            "the limit of a node is `shear` times its area, and at an edge this would include faces that do not touch",
+            "name the side that touches as the secondary one, or use method = \"mortar\"",
+        ));
+    }
+    // Corners of the primary side lie over areas that the nodes of the secondary one have already.
     let limits = shear.map(|shear| {
-        let facets = facets.iter().map(|(shape, facets)| (*shape, facets));
+        let facets = std::iter::once((secondary.shape, &secondary.facets));
         let areas = consistent_weights(nodes, facets, reference, case.thickness);
         areas.iter().map(|area| shear * area).collect()
     });

@@ -14,6 +14,7 @@ mod masses;
 mod meshes;
 mod obstacles;
 mod record;
+mod shear;
 mod steps;
 mod stick;
 mod unconnected;
@@ -52,7 +53,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 30] = [
+pub const WARNINGS: [Entry; 33] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -77,7 +78,7 @@ pub const WARNINGS: [Entry; 30] = [
         id: "velocity-jump",
         why: "neither mesh nor step resolves the front of this wave: stresses and contact forces oscillate behind \
               it, and their peaks depend on both",
-        advice: "an initial velocity of the body that is that of the motion, or a motion that begins with the velocity of the body, as one with t^2",
+        advice: "an initial velocity of the body that is that of the motion, or a motion that begins with the velocity of the body, such as one with t^2",
         rule: Rule::Model(velocities::velocity_jump),
     },
     Entry {
@@ -91,7 +92,7 @@ pub const WARNINGS: [Entry; 30] = [
         id: "wave-speed",
         why: "in solids it is between 1 and 20 000 m/s: stiffness and density are probably not in the units of the case, or \
               Poisson's ratio is too close to 1/2",
-        advice: "consistent units, as mm, s, t and MPa, or mm, ms, g and MPa",
+        advice: "consistent units, such as mm, s, t and MPa, or mm, ms, g and MPa, or mm, ms, kg and GPa",
         rule: Rule::Model(waves::wave_speed),
     },
     Entry {
@@ -148,6 +149,14 @@ pub const WARNINGS: [Entry; 30] = [
         rule: Rule::Model(stick::undamped_stick),
     },
     Entry {
+        id: "conditional-stability",
+        why: "vibrations of the mesh whose Ω = ωΔt is above the limit of stability grow in every step, until they \
+              are all that is left of the motion",
+        advice: "other parameters (`newmark`: beta ≥ gamma/2 and gamma ≥ 1/2), another scheme, or steps so short that \
+                 the energy of the run stays the same; `carom explain` prints the spectral radius",
+        rule: Rule::Model(steps::conditional_stability),
+    },
+    Entry {
         id: "unconnected-bodies",
         why: "every body has nodes of its own: nothing holds the two together there, and nothing keeps one out of the other",
         advice: "a [[contact]] between the sides that touch; to connect the two, a [[tie]] of these sides",
@@ -168,6 +177,13 @@ pub const WARNINGS: [Entry; 30] = [
         rule: Rule::Record(record::merged_impacts),
     },
     Entry {
+        id: "split-impact",
+        why: "an interruption of contact as long as 2 % of the recorded time ends an episode: restitution, duration and \
+              impulse are those before it, and with a later end of the run they are those of both parts",
+        advice: "a later end, if both are parts of one impact, or numbers from the columns of history.csv",
+        rule: Rule::Record(record::split_impact),
+    },
+    Entry {
         id: "one-node",
         why: "force and pressure are those of a single node and depend on the mesh around it",
         advice: "a finer mesh at the contact",
@@ -186,6 +202,14 @@ pub const WARNINGS: [Entry; 30] = [
         advice: "enforcement = \"augmented\"; the finer side as the primary one if the secondary one is held; a side \
                  without the nodes that supports or ties hold",
         rule: Rule::Record(record::dependent_gaps),
+    },
+    Entry {
+        id: "shear-area",
+        why: "`shear` limits the force of a row to this stress times the area of its node: with several rows friction is \
+              too large, and without an area it is missing",
+        advice: "nodes of the secondary side that do not lie over joints of the primary one; with method = \"mortar\", a finer \
+                 secondary side",
+        rule: Rule::Record(shear::shear_area),
     },
     Entry {
         id: "undeclared-contact",
@@ -235,7 +259,7 @@ pub const WARNINGS: [Entry; 30] = [
         id: "numerical-dissipation",
         why: "elastic bodies keep this energy: vibrations and rebounds become smaller by the scheme and its step, not by the \
             material",
-        advice: "a shorter step, or a scheme that takes less, as a larger rho_inf or energy-momentum; nothing where \
+        advice: "a shorter step, or a scheme that dissipates less, such as energy-momentum or the same one with a larger rho_inf; nothing where \
                  vibrations are meant to die out",
         rule: Rule::Record(record::numerical_dissipation),
     },

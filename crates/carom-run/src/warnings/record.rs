@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::{Case, ContactSpec, Enforcement, Method};
 use carom_mechanics::model::Model;
-use carom_record::metrics::{self, Episode, MUCH_CREATED, episodes, first_episode};
+use carom_record::metrics::{self, Episode, MUCH_CREATED, default_bridge, episodes, first_episode};
 use carom_record::{Event, Run};
 
 use super::found::{Found, covered_by, short};
@@ -70,6 +70,26 @@ pub(super) fn merged_impacts(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
         parts.len() + 1,
         short(opening),
         case.labels().time
+    );
+    vec![Found::of_the_run(what)]
+}
+
+/// Contact that closes again soon after the first episode, compared with its length.
+pub(super) fn split_impact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    let times = run.times();
+    let episodes = episodes(&run.history, default_bridge(&run.history));
+    let [first, second, ..] = episodes[..] else { return Vec::new() };
+    let Some(end) = first.end.filter(|_| !case.time.scheme.is_static()) else { return Vec::new() };
+    let length = times[end] - times[first.start];
+    let open = times[second.start] - times[end];
+    if open >= length {
+        return Vec::new();
+    }
+    let what = format!(
+        "the first episode of contact lasts {} {unit}, and the next one begins {} {unit} after it",
+        short(length),
+        short(open),
+        unit = case.labels().time
     );
     vec![Found::of_the_run(what)]
 }

@@ -1,4 +1,5 @@
-//! Warning about a step that does not resolve an impact.
+//! Warnings about steps: those that do not resolve an impact, and those with which a scheme may be
+//! unstable.
 //!
 //! The motion of the softer body (impedance ρc) in an impact is made of pressure waves that cross
 //! it along the contact's normal and return: the force of a bar that strikes a wall lasts 2L/c, and
@@ -14,6 +15,7 @@ use carom_case::{Case, MaterialSpec};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_record::metrics::{Impact, first_episode};
 use carom_record::{History, Run};
+use carom_time::Explained;
 
 use super::extent;
 use super::found::{Found, short};
@@ -21,6 +23,26 @@ use super::found::{Found, short};
 /// Share of the velocity of approach that a body loses in the step of the largest force, above
 /// which this force is an impulse. That of half a sine in ten steps is 0.3.
 const LARGE: f64 = 0.25;
+
+/// Implicit schemes of which some vibrations grow with long steps.
+pub(super) fn conditional_stability(case: &Case, _: &Model) -> Vec<Found> {
+    let scheme = &case.time.scheme;
+    if scheme.is_static() {
+        return Vec::new();
+    }
+    let Ok(Explained::Stages(explained)) = scheme.integrator().map(|made| made.explain()) else {
+        return Vec::new();
+    };
+    if explained.a_stable {
+        return Vec::new();
+    }
+    let what = format!(
+        "`{}` with these parameters is not unconditionally stable (ρ∞ = {})",
+        scheme.kind,
+        short(explained.rho_inf)
+    );
+    vec![Found::of_the_run(what)]
+}
 
 pub(super) fn long_step(case: &Case, model: &Model, run: &Run) -> Vec<Found> {
     // Rows stand for single steps.

@@ -2,9 +2,9 @@
 //! rub; Coulomb's law at every node; limits and coefficients that change.
 
 use carom_contact::{FrictionState, Pair};
-use carom_run::{GridReport, Simulation, State};
+use carom_run::{GridReport, Setup, Simulation, State};
 
-use super::common::{DISCS, change, finish, momenta, resumes_with_the_same_bits, simulation};
+use super::common::{DISCS, case, change, finish, momenta, resumes_with_the_same_bits, simulation};
 use super::rebound::record;
 
 /// One of every family.
@@ -186,6 +186,56 @@ fn a_limited_traction_is_that_stress_times_the_area() {
         let alone = impulses("shear = 0.05", scheme)[0];
         assert!((alone + force).abs() < 2e-3 * force, "{scheme}: {alone} {force}");
     }
+}
+
+/// A block of the width 1 is dragged over a bed with τ = 0.1; in load steps, τ A.
+const DRAGGED: &str = r#"
+dimension = 2
+material = [{ name = "steel", law = "linear-elastic", density = 1.0, young = 1e3, poisson = 0.0 }]
+[[body]]
+name = "block"
+material = "steel"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.1, 0.0], max = [1.1, 0.2], cells = [2, 1] }
+[[body]]
+name = "bed"
+material = "steel"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-1.0, -0.2], max = [2.0, 0.0], cells = [36, 1] }
+[[support]]
+name = "ground"
+on = ["bed.bottom"]
+fix = ["x", "y"]
+[[support]]
+on = ["block.top"]
+move = { x = "0.02*max(t - 1, 0)", y = "-0.002*min(t, 1)" }
+[[contact]]
+name = "drag"
+secondary = "bed.top"
+primary = "block.bottom"
+shear = 0.1
+[time]
+end = 2.0
+step = 0.1
+scheme = { kind = "static" }
+"#;
+
+/// The area is that of the nodes of the secondary side under the block: corners of the primary side
+/// add none.
+#[test]
+fn corners_of_the_primary_side_add_no_area() {
+    let run = record(DRAGGED, &[]);
+    let force = -run.column("ground.reaction_x").unwrap().last().unwrap();
+    // At each end the corner may bear in place of a node, that is, of a facet of the length 1/12.
+    assert!((force.abs() - 0.1).abs() < 0.1 * 2.0 / 12.0, "{force}");
+}
+
+/// At a sharp edge the area of a node would be that of both faces.
+#[test]
+fn a_limited_traction_needs_a_side_without_edges() {
+    let skin = case(DRAGGED, &["contact.drag.secondary=block.skin", "contact.drag.primary=bed.top"]);
+    let refused = format!("{:?}", Setup::new(&skin).build().err().unwrap());
+    assert!(refused.contains("side block.skin has sharp edges"), "{refused}");
 }
 
 /// dv/dt = −g [μ_d + (μ_s − μ_d) exp(−c v)] has the closed solution

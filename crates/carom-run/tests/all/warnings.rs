@@ -373,6 +373,27 @@ fn impacts_that_count_as_one() {
     assert!(with("time.end=140.0").contains(&merged));
 }
 
+/// A bar that bounces: flights of 2v/g between contacts of 2L/c = 0.67.
+#[test]
+fn an_impact_that_may_be_a_part() {
+    let with = |gravity: &str| recorded(BAR, &[gravity, "output.fields_every=0"]);
+    let split = "split-impact".to_owned();
+    assert!(with("body.bar.gravity=[-5.0]").contains(&split));
+    assert!(!with("body.bar.gravity=[-1.0]").contains(&split));
+}
+
+/// Newmark's method is stable for all steps if β ≥ γ/2 ≥ 1/4.
+#[test]
+fn steps_that_may_be_unstable() {
+    let with = |beta: f64| {
+        let scheme = format!("time.scheme={{ kind = \"newmark\", beta = {beta}, gamma = 0.5 }}");
+        ids(BAR, &[&scheme])
+    };
+    let conditional = "conditional-stability".to_owned();
+    assert!(with(0.1).contains(&conditional) && with(0.24).contains(&conditional));
+    assert!(!with(0.25).contains(&conditional));
+}
+
 /// A contact that is shorter than a step is an impact, and is told.
 #[test]
 fn an_impact_within_a_step() {
