@@ -215,7 +215,6 @@ impl Check {
         let mut homes = self.root.map_or_else(Vec::new, |root| homes(root, word));
         homes.dedup();
         let near = suggest::nearest(word, free)
-            .or_else(|| all().find(|key| OTHER_WORDS.contains(&(word, *key)) && table.get(key).is_none()))
             .or_else(|| suggest::nearest(word, all()).filter(|_| homes.is_empty()));
         let is_of_case = homes.first().is_some_and(|home| *home == "the case");
         let above = if is_of_case { "; keys of the case stand above its first [table]" } else { "" };
@@ -250,9 +249,6 @@ fn and(words: &[String]) -> String {
 fn words(variants: &Variants) -> String {
     suggest::list(variants.tables.iter().map(|(word, _)| *word))
 }
-
-/// Words that other programs use, and the keys that they mean.
-const OTHER_WORDS: [(&str, &str); 3] = [("point", "at"), ("position", "at"), ("friction", "mu")];
 
 /// Names of the tables, in `root` and below, that have this key.
 fn homes(root: &'static keys::Table, word: &str) -> Vec<&'static str> {

@@ -1,7 +1,31 @@
-//! "Did you mean": the candidate nearest to a misspelt word.
+//! "Did you mean": the candidate that a word means or is nearest to.
 
-/// The nearest candidate, if at most a third of the letters differ, or the only one that begins
-/// with the word, or is its first part: `redistributed` of `redistributed-nearest`.
+/// Words that other programs use, or symbols, and what they mean here.
+const OTHER_WORDS: [(&str, &str); 19] = [
+    ("dt", "step"),
+    ("e", "young"),
+    ("explicit", "central-difference"),
+    ("friction", "mu"),
+    ("friction_coefficient", "mu"),
+    ("leapfrog", "central-difference"),
+    ("master", "primary"),
+    ("nu", "poisson"),
+    ("obstacle", "contact"),
+    ("point", "at"),
+    ("position", "at"),
+    ("rho", "density"),
+    ("slave", "secondary"),
+    ("t_end", "end"),
+    ("time_step", "step"),
+    ("v", "velocity"),
+    ("v0", "velocity"),
+    ("velocity_verlet", "central-difference"),
+    ("verlet", "central-difference"),
+];
+
+/// The candidate that is another word for this one; or the nearest one, if at most a third of the
+/// letters differ, or the only one that begins with the word, or is its first part:
+/// `redistributed` of `redistributed-nearest`.
 pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let plain = |s: &str| s.to_lowercase().replace(['-', ' '], "_");
     let word = plain(word);
@@ -14,6 +38,10 @@ pub(super) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         (found <= most).then_some(found)
     };
     let candidates: Vec<_> = candidates.into_iter().collect();
+    let means = |candidate: &&str| OTHER_WORDS.contains(&(word.as_str(), *candidate));
+    if let Some(meant) = candidates.iter().copied().find(means) {
+        return Some(meant);
+    }
     let near = candidates.iter().filter_map(|&c| Some((distance(c)?, c))).min_by_key(|(d, _)| *d);
     let is_part = |candidate: &&str| {
         let candidate = plain(candidate);

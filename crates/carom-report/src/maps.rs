@@ -124,8 +124,7 @@ pub(crate) fn pressure(run: &Recorded) -> Option<Figure> {
         stress: fields.unit("contact_pressure").to_owned(),
         sides: coloured,
     };
-    let caption =
-        "Contact pressure along the secondary side; s is the reference arc length. Data: `contact.csv`.";
+    let caption = "Contact pressure along the secondary side; s is the reference arc length. A closed side begins, for each contact, in the middle of its part without contact. Data: `contact.csv`.";
     maps.figure(caption, table)
 }
 

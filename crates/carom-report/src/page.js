@@ -203,7 +203,9 @@ const player = (root, frames, unit, draw, first) => {
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
   // The first frame with the largest contact forces, but for round-off, or else with the largest stress.
-  const force = f => f.forces.reduce((sum, x) => sum + Math.abs(x), 0);
+  // A node takes two vectors: its place and its force.
+  const isForce = i => i % (2 * data.dimension) >= data.dimension;
+  const force = f => f.forces.reduce((sum, x, i) => isForce(i) ? sum + Math.abs(x) : sum, 0);
   const most = frames.reduce((a, b) => force(b) > 1.001 * force(a) ? b : a);
   show(force(most) > 0 ? most.time : first ?? end);
 };

@@ -112,7 +112,12 @@ impl<'a> Checked<'a> {
         let own = of(base.name(), base.text(), &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
         for diagnostic in found {
             let placed = arms::placed(self.study, draft, &diagnostic, &own);
-            if !self.found.contains(&placed) {
+            // Of several arms with the same mistake, the first one is named.
+            let place = |of: &Diagnostic| (of.file.clone(), of.line, of.column);
+            let alike = |known: &Diagnostic| {
+                place(known) == place(&placed) && known.what == placed.what && known.help == placed.help
+            };
+            if !self.found.iter().any(alike) {
                 self.found.push(placed);
             }
         }

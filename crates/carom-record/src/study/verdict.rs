@@ -132,12 +132,21 @@ pub(super) fn recommended(field: &Field) -> Result<Verdict, Vec<String>> {
     let candidates = || all().filter(|r| is_accurate(r) && field.is_on_front(r));
     let Some(cheapest) = field.least(candidates(), |r| r.cost) else {
         let accuracy = required.unwrap_or_default();
-        return Err(vec![format!(
+        let uncertainty = field.measured.measure.uncertainty;
+        let mut reasons = vec![format!(
             "no arm has the required accuracy, {accuracy}, with the uncertainty included; the best one, {}, has \
              an error of {}",
             field.name(best),
             known(best)
-        )]);
+        )];
+        if uncertainty > accuracy {
+            reasons.push(format!(
+                "no arm can have it: the uncertainty of the reference alone is {}; refine the reference, or \
+                 require less",
+                short(uncertainty)
+            ));
+        }
+        return Err(reasons);
     };
     let affordable = candidates().filter(|r| r.cost <= EQUAL_COST * cheapest.cost);
     let chosen = field.least(affordable, |r| r.error).unwrap_or(cheapest);

@@ -2,6 +2,20 @@
 
 use crate::axis::Axis;
 
+/// Ticks of a decade, from few to many.
+const FACTORS: [&[f64]; 4] = [
+    &[1.0],
+    &[1.0, 2.0, 5.0],
+    &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
+    &[1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0],
+];
+
+/// Number of ticks from which an axis is readable.
+const ENOUGH: usize = 3;
+
+/// Decadic logarithms of numbers that are written without a power of ten.
+const PLAIN: std::ops::Range<f64> = -3.3..4.0;
+
 /// A linear or logarithmic scale.
 pub(super) struct Scale {
     pub(super) axis: Axis,
@@ -20,24 +34,25 @@ impl Scale {
         let high = high + air;
         let (low, high) = if high - low < 0.2 { (low - 0.15, high + 0.15) } else { (low, high) };
         let every = ((high - low) / count).ceil().max(1.0) as i64;
-        let factors: &[f64] = match high - low {
-            span if span < 0.6 => &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
-            span if span < 1.7 => &[1.0, 2.0, 5.0],
-            _ => &[1.0],
+        let at = |factors: &'static [f64]| {
+            let decades = (low.floor() as i64..=high.ceil() as i64).filter(move |d| d % every == 0);
+            let all = decades.flat_map(move |d| factors.iter().map(move |factor| (d, *factor)));
+            all.filter(move |(d, factor)| (low..=high).contains(&(*d as f64 + factor.log10())))
         };
-        let decades = (low.floor() as i64..=high.ceil() as i64).filter(|d| d % every == 0);
-        let tick = |d: i64, f: &f64| {
+        // The fewest that show how the axis is divided.
+        let factors = FACTORS.into_iter().find(|factors| at(factors).count() >= ENOUGH);
+        let factors = factors.unwrap_or(FACTORS[FACTORS.len() - 1]);
+        let is_decimal = factors.len() > 1 && PLAIN.contains(&low) && PLAIN.contains(&high);
+        let tick = |(d, factor): (i64, f64)| {
             let power = d.to_string().replace('-', "−");
-            let label = match d {
-                -3..=2 if factors.len() > 1 => format!("{}", (f * 10f64.powi(d as i32) * 1e4).round() / 1e4),
-                _ if *f == 1.0 => format!("10^{{{power}}}"),
-                _ => format!("{f}·10^{{{power}}}"),
+            let label = match factor {
+                _ if is_decimal => format!("{}", (factor * 10f64.powi(d as i32) * 1e5).round() / 1e5),
+                1.0 => format!("10^{{{power}}}"),
+                _ => format!("{factor}·10^{{{power}}}"),
             };
-            (d as f64 + f.log10(), label)
+            (d as f64 + factor.log10(), label)
         };
-        let ticks = decades
-            .flat_map(|d| factors.iter().map(move |f| tick(d, f)))
-            .filter(|(x, _)| (low..=high).contains(x));
+        let ticks = at(factors).map(tick);
         Self { axis: Axis { low, high, ticks: ticks.collect(), exponent: 0, offset: 0.0 }, log }
     }
 

@@ -153,6 +153,10 @@ fn accuracy_is_promised_with_the_uncertainty_included() {
         why[0].contains("no arm has the required accuracy, 0.05, with the uncertainty included"),
         "{why:?}"
     );
+    assert_eq!(why.len(), 1);
+    let study = study(&[("a", 0, 0.03, 1.0)]);
+    let why = by_columns(Goal::Trajectory, &study, &reference(0.05)).verdict.unwrap_err();
+    assert!(why[1].contains("the uncertainty of the reference alone is 0.0625"), "{why:?}");
 }
 
 /// Nobody who reads the table can find an arm with a smaller error at no more cost than that of the

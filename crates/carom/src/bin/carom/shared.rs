@@ -4,14 +4,20 @@ use carom_record::Warning;
 use carom_record::study::StudyManifest;
 use serde_json::{Value, json};
 
+/// Most arms that are named.
+const NAMED: usize = 4;
+
 /// `"Hu", "Newmark": ` or `all arms: `; nothing in a study of one arm.
 pub(crate) fn of_arms(arms: &[usize], manifest: &StudyManifest) -> String {
     match (arms.len(), manifest.arms.len()) {
         (_, 1) => String::new(),
         (some, all) if some == all => "all arms: ".to_owned(),
         _ => {
-            let names: Vec<_> = arms.iter().map(|arm| format!("\"{}\"", manifest.arms[*arm].name)).collect();
-            names.join(", ") + ": "
+            let name = |arm: &usize| format!("\"{}\"", manifest.arms[*arm].name);
+            let names: Vec<_> = arms.iter().take(NAMED).map(name).collect();
+            let others = arms.len().saturating_sub(NAMED);
+            let others = if others > 0 { format!(" and {others} others") } else { String::new() };
+            names.join(", ") + &others + ": "
         }
     }
 }

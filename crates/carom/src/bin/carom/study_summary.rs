@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use carom_record::Status;
 use carom_record::study::ranking::Ranking;
 use carom_record::study::{Row, Study, StudyManifest, Verdict};
+use carom_record::{Status, Warning};
 use carom_report::{ReportError, ReportSummary};
 use carom_study::Outcome;
 use serde_json::json;
@@ -53,13 +53,35 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool) -> Result<(
         "claims": study.verdicts.iter().map(claim).collect::<Vec<_>>(),
         "warnings": warnings(&study.warnings(), &study.manifest),
     }))?;
-    out::summary(&text(study))?;
     if !console::is_silent() {
-        for (warning, arms) in study.warnings() {
-            console::say(console::warning("warning: ", &of_arms(&arms, &study.manifest), warning));
+        warn(study);
+    }
+    out::summary(&text(study))?;
+    Ok(out::summary(&page.as_deref().unwrap_or(directory).display().to_string())?)
+}
+
+/// Prints the warnings of the arms. What was found differs in its numbers: it is said once, of the
+/// first arm.
+fn warn(study: &Study) {
+    let mut found: Vec<Vec<(&Warning, Vec<usize>)>> = Vec::new();
+    for (warning, arms) in study.warnings() {
+        let alike =
+            |same: &&mut Vec<(&Warning, _)>| same[0].0.id == warning.id && same[0].0.place == warning.place;
+        match found.iter_mut().find(alike) {
+            Some(same) => same.push((warning, arms)),
+            None => found.push(vec![(warning, arms)]),
         }
     }
-    Ok(out::summary(&page.as_deref().unwrap_or(directory).display().to_string())?)
+    for same in found {
+        let mut warning = same[0].0.clone();
+        let mut arms: Vec<usize> = same.iter().flat_map(|(_, arms)| arms.clone()).collect();
+        if same.len() > 1 {
+            let first = &study.rows[arms[0]].name;
+            warning.what = format!("{} (\"{first}\"; similar in the others)", warning.what);
+        }
+        arms.sort_unstable();
+        console::say(console::warning("warning: ", &of_arms(&arms, &study.manifest), &warning));
+    }
 }
 
 fn text(study: &Study) -> String {
