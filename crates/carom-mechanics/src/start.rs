@@ -141,8 +141,8 @@ pub fn start(
     Ok(state)
 }
 
-/// The jumps of velocities, divided by the step, for the contact forces with which a run goes on.
-/// Nodes without mass have none.
+/// The jumps of velocities, divided by the step, for the contact forces with which a run goes on;
+/// none in a model with massless nodes.
 fn jump(model: &Model, state: &mut State, system: &mut System) -> Result<(), Rejected> {
     if state.f_contact.iter().all(|force| *force == 0.0) || model.massless.contains(&true) {
         return Ok(());

@@ -161,8 +161,8 @@ const charts = (() => {
   return { move: t => { now = t; all.forEach(each => each.move()); }, picked: call => { pick = call; } };
 })();
 
-// Play and pause, the slider and keys. `draw` draws a frame.
-const player = (root, frames, unit, draw, first) => {
+// Play and pause, the slider and keys. `draw` draws a frame; `force` is the size of its contact forces.
+const player = (root, frames, unit, draw, force, first) => {
   const [button, slider, shown, speed] = [".play", ".time", "output", ".speed"].map(s => root.querySelector(s));
   const start = frames[0].time, end = frames[frames.length - 1].time;
   let frame = -1, now = start, playing = null;
@@ -203,9 +203,6 @@ const player = (root, frames, unit, draw, first) => {
     if (event.key === " " && event.target !== button) { playing === null ? play() : pause(); event.preventDefault(); }
   });
   // The first frame with the largest contact forces, but for round-off, or else with the largest stress.
-  // A node takes two vectors: its place and its force.
-  const isForce = i => i % (2 * data.dimension) >= data.dimension;
-  const force = f => f.forces.reduce((sum, x, i) => isForce(i) ? sum + Math.abs(x) : sum, 0);
   const most = frames.reduce((a, b) => force(b) > 1.001 * force(a) ? b : a);
   show(force(most) > 0 ? most.time : first ?? end);
 };

@@ -479,5 +479,8 @@ const scene = async (root, data) => {
   resize();
   new ResizeObserver(resize).observe(canvas.parentElement);
   paint();
-  player(root, frames, data.unit, fill, data.first);
+  // A node takes two vectors: its place and its force.
+  const isForce = i => i % (2 * D) >= D;
+  const force = f => f.forces.reduce((sum, x, i) => isForce(i) ? sum + Math.abs(x) : sum, 0);
+  player(root, frames, data.unit, fill, force, data.first);
 };

@@ -110,6 +110,7 @@ impl<'a> Checked<'a> {
     ) -> Result<(), CaseError> {
         let found = diagnostics(error)?;
         let own = of(base.name(), base.text(), &[]).err().map_or_else(|| Ok(Vec::new()), diagnostics)?;
+        let of_others = self.found.len();
         for diagnostic in found {
             let placed = arms::placed(self.study, draft, &diagnostic, &own);
             // Of several arms with the same mistake, the first one is named.
@@ -117,7 +118,7 @@ impl<'a> Checked<'a> {
             let alike = |known: &Diagnostic| {
                 place(known) == place(&placed) && known.what == placed.what && known.help == placed.help
             };
-            if !self.found.iter().any(alike) {
+            if !self.found[..of_others].iter().any(alike) && !self.found.contains(&placed) {
                 self.found.push(placed);
             }
         }

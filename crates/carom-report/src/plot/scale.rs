@@ -39,9 +39,17 @@ impl Scale {
             let all = decades.flat_map(move |d| factors.iter().map(move |factor| (d, *factor)));
             all.filter(move |(d, factor)| (low..=high).contains(&(*d as f64 + factor.log10())))
         };
-        // The fewest that show how the axis is divided.
-        let factors = FACTORS.into_iter().find(|factors| at(factors).count() >= ENOUGH);
-        let factors = factors.unwrap_or(FACTORS[FACTORS.len() - 1]);
+        // The fewest that show how the axis is divided, without crowding it.
+        let most = (1.5 * count).max(4.0) as usize;
+        let mut factors = FACTORS[0];
+        for finer in FACTORS.into_iter().filter(|_| every == 1) {
+            if at(finer).count() <= most {
+                factors = finer;
+            }
+            if at(finer).count() >= ENOUGH {
+                break;
+            }
+        }
         let is_decimal = factors.len() > 1 && PLAIN.contains(&low) && PLAIN.contains(&high);
         let tick = |(d, factor): (i64, f64)| {
             let power = d.to_string().replace('-', "−");

@@ -259,17 +259,14 @@ fn only(study: &Study, groups: &[Refinement]) -> Option<String> {
     others.then(|| names.collect::<Vec<_>>().join("; "))
 }
 
-/// The methods of groups, if each is of one, or their settings without those that all of them have.
+/// The method of each group, if it is of one, or its settings without those that all of them have.
 fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
+    // Runs of the reference may have the settings of a method.
     let method = |group: &Refinement| {
-        let mut methods = group.arms.iter().map(|arm| study.manifest.arms[*arm].role.method.clone());
-        let first = methods.next()??;
-        methods.all(|other| other.as_ref() == Some(&first)).then_some(first)
+        let mut methods = group.arms.iter().filter_map(|arm| study.manifest.arms[*arm].role.method.clone());
+        let first = methods.next().filter(|_| groups.len() > 1)?;
+        methods.all(|other| other == first).then_some(first)
     };
-    let methods: Option<Vec<String>> = groups.iter().map(method).collect();
-    if let Some(methods) = methods.filter(|_| groups.len() > 1) {
-        return methods;
-    }
     let settings = groups.iter().flat_map(|group| &group.common);
     let keys = Keys::of(settings.map(String::as_str), common_time(study));
     let is_shared = |set: &&str| {
@@ -280,7 +277,7 @@ fn labels(study: &Study, groups: &[Refinement]) -> Vec<String> {
         own.retain(|set| !is_shared(set));
         keys.label(&own.join(", "))
     };
-    groups.iter().map(own).collect()
+    groups.iter().map(|group| method(group).unwrap_or_else(|| own(group))).collect()
 }
 
 /// Slopes and exponents with their intervals.

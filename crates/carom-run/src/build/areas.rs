@@ -47,7 +47,7 @@ fn area_vector(shape: FacetShape, facet: &[usize], xi: [f64; 2], y: &[f64]) -> [
 
 /// Cosine of the largest angle between the normals of two facets with a common node on a side
 /// without edges.
-const EDGE: f64 = 0.5;
+const EDGE: f64 = 0.49;
 
 /// Whether facets of a side meet at an edge or a corner.
 pub(super) fn has_edge(side: &Side, y: &[f64]) -> bool {

@@ -227,16 +227,21 @@ fn friction(
     if shear.is_some() && spec.method != Method::Mortar && has_edge(secondary, reference) {
         return Err(Problem::new(
             spec.path("shear"),
-            format!("side {} has sharp edges", spec.secondary),
+            format!("facets of side {} meet at more than 60°", spec.secondary),
             "the limit of a node is `shear` times its area, and at an edge this would include faces that do not touch",
-            "name the side that touches as the secondary one, or use method = \"mortar\"",
+            "name the side that touches as the secondary one, refine a side that should be smooth, or use method = \"mortar\"",
         ));
     }
-    // Corners of the primary side lie over areas that the nodes of the secondary one have already.
+    // Nodes of the primary side lie over areas that those of the secondary one have already: of the
+    // two laws they have Coulomb's alone.
+    let on_primary = if mu.is_some() { f64::INFINITY } else { 0.0 };
     let limits = shear.map(|shear| {
         let facets = std::iter::once((secondary.shape, &secondary.facets));
         let areas = consistent_weights(nodes, facets, reference, case.thickness);
-        areas.iter().map(|area| shear * area).collect()
+        let limit = |(node, area): (&usize, &f64)| {
+            if secondary.nodes.contains(node) { shear * area } else { on_primary }
+        };
+        nodes.iter().zip(&areas).map(limit).collect()
     });
     Ok(Some(Friction {
         stick: stick.map(|formula| (formula, format!("mu of contact \"{}\"", spec.name))),

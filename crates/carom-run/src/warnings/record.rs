@@ -80,6 +80,16 @@ pub(super) fn split_impact(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let episodes = episodes(&run.history, default_bridge(&run.history));
     let [first, second, ..] = episodes[..] else { return Vec::new() };
     let Some(end) = first.end.filter(|_| !case.time.scheme.is_static()) else { return Vec::new() };
+    let closes = |episode: Episode| -> BTreeSet<&str> {
+        let from = times[episode.start];
+        let to = episode.end.map_or(f64::INFINITY, |end| times[end]);
+        let rows = run.contact.iter().filter(|row| (from..to).contains(&row.time));
+        rows.map(|row| row.contact.as_ref()).collect()
+    };
+    // A body that rests on another one has had no impact yet; another contact is another impact.
+    if first.start == 0 || closes(first).is_disjoint(&closes(second)) {
+        return Vec::new();
+    }
     let length = times[end] - times[first.start];
     let open = times[second.start] - times[end];
     if open >= length {

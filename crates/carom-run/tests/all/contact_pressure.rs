@@ -26,6 +26,39 @@ fn body(name: &str, element: &str, size: f64, bottom: f64, cells: usize) -> Stri
     )
 }
 
+/// A block on a rough plane bulges, and its walls lean over the plane: they are not loaded.
+#[test]
+fn walls_that_lean_over_the_contact_are_not_loaded() {
+    const BULGES: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 10.0, poisson = 0.3 }]
+[[body]]
+name = "b"
+material = "m"
+element = "Q9"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [8, 8] }
+[[support]]
+on = ["b.top"]
+fix = ["x"]
+move = { y = "-0.25*t" }
+[[contact]]
+name = "floor"
+secondary = "b.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+mu = 1.0
+[time]
+end = 1.0
+step = 0.25
+scheme = { kind = "static" }
+"#;
+    let most = |side: &str| {
+        let run = record(BULGES, &[&format!("contact.floor.secondary={side}")]);
+        run.contact.iter().map(|row| row.pressure).fold(0.0, f64::max)
+    };
+    let [bottom, skin] = ["b.bottom", "b.skin"].map(most);
+    assert!(bottom > 7.0 && (skin / bottom - 1.0).abs() < 1e-6, "{bottom} {skin}");
+}
+
 /// The record of a static press of the body "upper" with a pressure of 2 on its top.
 fn pressed(element: &str, young: f64, bodies: &[String], contact: &str) -> MemoryRecord {
     let in_space = SPACE.contains(&element);

@@ -230,12 +230,49 @@ fn corners_of_the_primary_side_add_no_area() {
     assert!((force.abs() - 0.1).abs() < 0.1 * 2.0 / 12.0, "{force}");
 }
 
+/// Where nodes without an area bear, or nodes have several rows.
+#[test]
+fn areas_that_are_not_those_of_the_contact_are_told() {
+    let told = |text: &str, sets: &[&str]| {
+        let warnings = record(text, sets).manifest.warnings;
+        let found = warnings.into_iter().filter(|warning| warning.id == "shear-area");
+        found.map(|warning| warning.what).collect::<Vec<_>>().join("; ")
+    };
+    let block = ["contact.drag.secondary=block.bottom", "contact.drag.primary=bed.top"];
+    assert_eq!(told(DRAGGED, &block), "");
+    let bears = "of the contact force acts at nodes that have no area";
+    assert!(told(DRAGGED, &[]).contains(bears));
+    let mortar = ["contact.drag.method=mortar", "body.bed.mesh.cells=[6, 1]"];
+    assert!(told(DRAGGED, &[block, mortar].concat()).contains(bears));
+    // In space, nodes over joints of the bed, whose facets match.
+    let in_space = DRAGGED
+        .replace("dimension = 2", "dimension = 3")
+        .replace("Q4", "Hex8")
+        .replace("rectangle", "box")
+        .replace(
+            "min = [0.1, 0.0], max = [1.1, 0.2], cells = [2, 1]",
+            "min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 0.2], cells = [2, 2, 1]",
+        )
+        .replace(
+            "min = [-1.0, -0.2], max = [2.0, 0.0], cells = [36, 1]",
+            "min = [-0.5, -0.5, -0.2], max = [2.0, 1.5, 0.0], cells = [5, 4, 1]",
+        )
+        .replace("fix = [\"x\", \"y\"]", "fix = [\"x\", \"y\", \"z\"]")
+        .replace(
+            "move = { x = \"0.02*max(t - 1, 0)\", y = ",
+            "move = { x = \"0.02*max(t - 1, 0)\", y = \"0\", z = ",
+        )
+        .replace("shear = 0.1", "shear = 0.1\nenforcement = \"penalty\"\nstiffness = 100.0");
+    let told = told(&in_space, &block);
+    assert!(told.contains("nodes over joints of the primary side have several rows"), "{told}");
+}
+
 /// At a sharp edge the area of a node would be that of both faces.
 #[test]
 fn a_limited_traction_needs_a_side_without_edges() {
     let skin = case(DRAGGED, &["contact.drag.secondary=block.skin", "contact.drag.primary=bed.top"]);
     let refused = format!("{:?}", Setup::new(&skin).build().err().unwrap());
-    assert!(refused.contains("side block.skin has sharp edges"), "{refused}");
+    assert!(refused.contains("facets of side block.skin meet at more than 60°"), "{refused}");
 }
 
 /// dv/dt = −g [μ_d + (μ_s − μ_d) exp(−c v)] has the closed solution

@@ -14,8 +14,9 @@ pub(crate) fn of_arms(arms: &[usize], manifest: &StudyManifest) -> String {
         (some, all) if some == all => "all arms: ".to_owned(),
         _ => {
             let name = |arm: &usize| format!("\"{}\"", manifest.arms[*arm].name);
-            let names: Vec<_> = arms.iter().take(NAMED).map(name).collect();
-            let others = arms.len().saturating_sub(NAMED);
+            let named = if arms.len() == NAMED + 1 { arms.len() } else { NAMED };
+            let names: Vec<_> = arms.iter().take(named).map(name).collect();
+            let others = arms.len().saturating_sub(named);
             let others = if others > 0 { format!(" and {others} others") } else { String::new() };
             names.join(", ") + &others + ": "
         }

@@ -60,14 +60,17 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool) -> Result<(
     Ok(out::summary(&page.as_deref().unwrap_or(directory).display().to_string())?)
 }
 
-/// Prints the warnings of the arms. What was found differs in its numbers: it is said once, of the
-/// first arm.
+/// Prints the warnings of the arms. What was found in several arms differs in its numbers: it is
+/// said once, of the first one.
 fn warn(study: &Study) {
     let mut found: Vec<Vec<(&Warning, Vec<usize>)>> = Vec::new();
     for (warning, arms) in study.warnings() {
-        let alike =
-            |same: &&mut Vec<(&Warning, _)>| same[0].0.id == warning.id && same[0].0.place == warning.place;
-        match found.iter_mut().find(alike) {
+        let is_new_in = |(other, known): &(&Warning, Vec<usize>)| {
+            other.id == warning.id
+                && other.place == warning.place
+                && !known.iter().any(|arm| arms.contains(arm))
+        };
+        match found.iter_mut().find(|same| same.iter().all(is_new_in)) {
             Some(same) => same.push((warning, arms)),
             None => found.push(vec![(warning, arms)]),
         }
