@@ -94,7 +94,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed, &moved], &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let unconstrained = free_motions(&parts, &fixed, &ties.points);
-    if case.time.scheme.is_static() {
+    // A contact that could not be made might hold them.
+    if case.time.scheme.is_static() && contacts.len() == case.contacts.len() {
         problems.extend(unsolvable::unconstrained(&parts, &unconstrained, &contacts));
     }
     problems.extend(unsolvable::massless(case, &parts, &massless));
