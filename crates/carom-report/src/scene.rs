@@ -15,11 +15,10 @@ use maud::{Markup, html};
 use serde_json::{Value, json};
 
 use crate::bodies::{fill_space, is_plane, places};
-use crate::labels::number;
+use crate::labels::{amount, number};
 use crate::noise::largest;
 use crate::obstacles;
 use crate::recorded::Recorded;
-use crate::scientific::significant;
 use crate::space::{Place, View, wires};
 use crate::text::Label;
 use mesh::{Mesh, symmetries};
@@ -269,7 +268,7 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
             figcaption {
                 (frames_in_words(run, &shown))
                 @if largest > 0.0 {
-                    " Longest arrow: contact force of " (Label(&format!("{} {}", significant(largest, 2), run.history.unit("contact_force_x")))) "."
+                    " Longest arrow: normal force of " (Label(&amount(largest, run.history.unit("contact_force_x")))) " at a node."
                 }
                 (run.projected())
                 @if dimension == 3 && !inside { " The inside is not in the page, which would exceed 8 MB." }
