@@ -113,7 +113,7 @@ impl<'a> Checked<'a> {
         let of_others = self.found.len();
         for diagnostic in found {
             let placed = arms::placed(self.study, draft, &diagnostic, &own);
-            // Of several arms with the same mistake, the first one is named.
+            // A mistake that several arms make at one place of the study is reported for the first.
             let place = |of: &Diagnostic| (of.file.clone(), of.line, of.column);
             let alike = |known: &Diagnostic| {
                 place(known) == place(&placed) && known.what == placed.what && known.help == placed.help

@@ -43,8 +43,8 @@ fn column<'a>(run: &'a Run, name: &str) -> &'a [f64] {
     run.column(name).unwrap()
 }
 
-/// What the ground gives is the change of the momentum of both bodies, also where impulses do not
-/// enter the accelerations of the scheme.
+/// The impulse of a support's reaction equals the change of momentum of the two bodies, for impulse
+/// schemes whose accelerations contain the impulses and for those whose accelerations do not.
 #[test]
 fn reactions_change_the_momentum() {
     for scheme in SCHEMES {
@@ -74,5 +74,48 @@ fn the_reaction_of_a_body_at_rest_is_its_weight() {
         for reaction in column(&run, "ground.reaction_y") {
             assert!((reaction - 2.0).abs() < 1e-3, "{scheme}: {reaction}");
         }
+    }
+}
+
+const TIED: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }]
+[[body]]
+name = "lower"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.5], cells = [4, 1] }
+velocity = [0.0, -1.0]
+[[body]]
+name = "upper"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.5], max = [1.0, 1.0], cells = [4, 4] }
+velocity = [0.0, -1.0]
+[[tie]]
+name = "joint"
+secondary = "upper.bottom"
+primary = "lower.top"
+[[contact]]
+name = "floor"
+secondary = "lower.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[time]
+end = 0.3
+step = 1e-3
+scheme = { kind = "moreau-jean", theta = 0.5 }
+[output]
+fields_every = 0
+"#;
+
+/// The impulse of a tie's force equals the momentum that the upper body, of the mass 1/2, gains.
+#[test]
+fn forces_of_ties_change_the_momentum_of_a_body() {
+    for scheme in SCHEMES {
+        let run = record(TIED, &[scheme]);
+        let force: f64 = column(&run, "joint.force_y").iter().skip(1).map(|force| 1e-3 * force).sum();
+        let velocity = column(&run, "upper.velocity_y");
+        let gained = 0.5 * (velocity[velocity.len() - 1] - velocity[0]);
+        assert!(gained > 0.5 && (force / gained - 1.0).abs() < 0.01, "{scheme}: {force} {gained}");
     }
 }
