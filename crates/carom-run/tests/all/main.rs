@@ -62,6 +62,7 @@ mod statics;
 mod substeps;
 mod tangent;
 mod tie_links;
+mod tie_messages;
 mod ties;
 mod undeclared;
 mod warnings;
