@@ -5,6 +5,11 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use crate::sums::{max_abs, sums};
+
+/// Numbers of a vector that a thread adds.
+const BLOCK: usize = 1 << 14;
+
 /// A number of threads; clones share them.
 ///
 /// ```
@@ -87,5 +92,34 @@ impl Threads {
             return work(0, items);
         }
         self.for_each(items.chunks_mut(size), |k, block| work(k * size, block));
+    }
+
+    /// Σ term(aᵢ, bᵢ, …) of several terms over vectors of the same length: the sums of blocks, added
+    /// in their order. Of short vectors the bits are those of [`sums`].
+    pub fn sums<const K: usize, const T: usize>(
+        &self,
+        of: [&[f64]; K],
+        terms: impl Fn([f64; K]) -> [f64; T] + Sync,
+    ) -> [f64; T] {
+        let length = of[0].len();
+        if length <= BLOCK {
+            return sums(of, terms);
+        }
+        let mut parts = vec![[0.0; T]; length.div_ceil(BLOCK)];
+        self.for_each(&mut parts, |block, part| {
+            let range = block * BLOCK..length.min((block + 1) * BLOCK);
+            *part = sums(of.map(|x| &x[range.clone()]), &terms);
+        });
+        std::array::from_fn(|t| parts.iter().map(|part| part[t]).sum())
+    }
+
+    /// [`max_abs`] of a vector.
+    pub fn max_abs(&self, x: &[f64]) -> f64 {
+        if x.len() <= BLOCK {
+            return max_abs(x);
+        }
+        let mut most = vec![0.0; x.len().div_ceil(BLOCK)];
+        self.for_each(most.iter_mut().zip(x.chunks(BLOCK)), |_, (most, x)| *most = max_abs(x));
+        most.into_iter().fold(0.0, f64::max)
     }
 }

@@ -56,4 +56,5 @@ pub use stepper::{Accepted, Explicit, Implicit, Impulsive, StepReport, Stepper};
 pub use stopped::Stopped;
 pub use timings::Timings;
 pub use trace::{Iteration, Trace};
+pub use velocity::active_rows::active_rows;
 pub use workspace::Workspace;

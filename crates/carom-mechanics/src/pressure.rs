@@ -50,12 +50,17 @@ struct Facet {
     rule: Arc<[RulePoint]>,
 }
 
-/// A point of a rule that is exact for constant |y'| and φ of degree 3.
+/// A point of a rule for ∫ φ da, which is exact on facets that remain flat, where |y'| is constant.
 #[derive(Debug)]
 struct RulePoint {
     functions: FacetFunctions,
     weight: f64,
 }
+
+/// Degree of the rule on facets that may be curved.
+const CURVED: usize = 5;
+/// Facets that a thread measures.
+const SHARE: usize = 64;
 
 /// Force, relative to the largest one of a contact, that has no direction.
 const ROUND_OFF: f64 = 1e-9;
@@ -100,7 +105,9 @@ impl Surfaces {
         let mut known = BTreeSet::new();
         for (shape, facets) in of_contacts() {
             let at = |(xi, weight)| RulePoint { functions: shape.functions(xi), weight };
-            let rule: Arc<[RulePoint]> = shape.rule(5).into_iter().map(at).collect();
+            let is_flat = shape.degree() == 1 && shape.corners() < 4;
+            let rule = shape.rule(if is_flat { 1 } else { CURVED });
+            let rule: Arc<[RulePoint]> = rule.into_iter().map(at).collect();
             for nodes in facets {
                 let mut key = nodes.clone();
                 key.sort_unstable();
@@ -114,15 +121,16 @@ impl Surfaces {
         surfaces
     }
 
-    /// The pressures of a state. Where a contact has a pressure field, that of its secondary side
-    /// is taken from it.
-    pub fn pressures(&self, model: &Model, state: &State) -> Pressures {
-        let contacts = model.contacts.iter().zip(&state.pairs).enumerate();
-        let of_contact = |(k, (contact, pairs)): (usize, (&Contact, &Vec<Pair>))| {
+    /// The pressures of a state with these rows ([`active_rows`](crate::active_rows)). Where a
+    /// contact has a pressure field, that of its secondary side is taken from it.
+    pub fn pressures(&self, model: &Model, state: &State, rows: &[Rows]) -> Pressures {
+        let contacts = model.contacts.iter().zip(&state.pairs).zip(rows);
+        let of_contact = |((contact, pairs), rows): ((&Contact, &Vec<Pair>), &Rows)| {
             if pairs.iter().all(|pair| !pair.active) {
                 return BTreeMap::new();
             }
-            let mut pressing = self.of_forces(model, state, k);
+            let forces = self.forces(contact, pairs, rows);
+            let mut pressing = self.of_forces(model, &state.y, &forces);
             for of in contact.kinematics.pressure_field(pairs, &state.y, self.thickness) {
                 let at: &mut Pressing = pressing.entry(of.node).or_insert(Pressing::NONE);
                 // The node at the tip of a fold belongs to both flanks.
@@ -140,15 +148,20 @@ impl Surfaces {
     }
 
     /// The pressures that follow from the forces of a contact on nodes.
-    fn of_forces(&self, model: &Model, state: &State, contact: usize) -> BTreeMap<usize, Pressing> {
-        let loads = self.loads(&self.forces(model, state, contact));
+    fn of_forces(&self, model: &Model, y: &[f64], forces: &[Option<Load>]) -> BTreeMap<usize, Pressing> {
+        let loads = self.loads(forces);
         let loaded = |node: &usize| loads[*node].is_some();
         let mut reached: Vec<usize> =
             (0..loads.len()).filter(loaded).flat_map(|node| &self.around[node]).copied().collect();
         reached.sort_unstable();
         reached.dedup();
         let mut areas: Vec<Option<Area>> = self.facets.iter().map(|_| None).collect();
-        reached.iter().for_each(|&facet| areas[facet] = Some(self.area(facet, &state.y)));
+        let mut measured: Vec<Option<Area>> = reached.iter().map(|_| None).collect();
+        model.threads.for_each_block(&mut measured, SHARE, |first, areas| {
+            let facets = &reached[first..];
+            areas.iter_mut().zip(facets).for_each(|(area, facet)| *area = Some(self.area(*facet, y)));
+        });
+        reached.iter().zip(measured).for_each(|(&facet, area)| areas[facet] = area);
         let coefficient = |(node, load): (usize, &Option<Load>)| {
             let load = load.as_ref()?;
             let area = self.loaded_area(node, load, &areas);
@@ -240,18 +253,10 @@ impl Surfaces {
     }
 
     /// The nodal forces of the active pairs of a contact on both sides.
-    fn forces(&self, model: &Model, state: &State, contact: usize) -> Vec<Option<Load>> {
+    fn forces(&self, contact: &Contact, pairs: &[Pair], rows: &Rows) -> Vec<Option<Load>> {
         let mut forces = vec![None; self.nodes.len()];
-        let dimension = model.dimension;
-        let mut rows = Rows::new(dimension);
-        let pairs = state.pairs[contact].iter();
-        let contact = &model.contacts[contact];
-        for pair in pairs.filter(|pair| pair.active) {
-            rows.clear();
-            if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_err() {
-                continue;
-            }
-            let row = rows.row(0);
+        let dimension = rows.dimension();
+        for (pair, row) in pairs.iter().zip(rows.iter()).filter(|(_, row)| !row.nodes.is_empty()) {
             let is_of_field = contact.kinematics.is_of_field(pair.node);
             let mean = Vector(row.first());
             let along = if is_of_field { mean * mean.norm().recip() } else { mean };

@@ -11,8 +11,8 @@ pub trait Recorder: Send {
     /// # Errors
     /// A row of another width, or an input/output error; so are all errors of a recorder.
     fn history(&mut self, row: &[f64]) -> Result<(), RecordError>;
-    /// Appends the state of an active contact node.
-    fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError>;
+    /// Appends the states of active contact nodes.
+    fn contact(&mut self, rows: &[ContactRow]) -> Result<(), RecordError>;
     /// Appends an event.
     fn log(&mut self, event: &Event) -> Result<(), RecordError>;
     /// Records the fields of a step.
@@ -39,8 +39,8 @@ impl Recorder for RunWriter {
         self.history(row)
     }
 
-    fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
-        self.contact(row)
+    fn contact(&mut self, rows: &[ContactRow]) -> Result<(), RecordError> {
+        self.contact(rows)
     }
 
     fn log(&mut self, event: &Event) -> Result<(), RecordError> {
@@ -117,9 +117,12 @@ impl Recorder for MemoryRecord {
         Ok(())
     }
 
-    fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
-        let [contact, friction] = [&row.contact, &row.friction].map(|text| text.clone().into_owned().into());
-        self.run.contact.push(ContactRow { contact, friction, ..row.clone() });
+    fn contact(&mut self, rows: &[ContactRow]) -> Result<(), RecordError> {
+        self.run.contact.extend(rows.iter().map(|row| {
+            let [contact, friction] =
+                [&row.contact, &row.friction].map(|text| text.clone().into_owned().into());
+            ContactRow { contact, friction, ..row.clone() }
+        }));
         Ok(())
     }
 

@@ -5,8 +5,10 @@
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::io::{self, BufWriter, Write as _};
 use std::path::PathBuf;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::RecordError;
@@ -195,55 +197,105 @@ pub(crate) enum Value<'a> {
     Text(&'a str),
 }
 
-/// A file of rows being written, with one buffer for all numbers.
+/// A file of rows being written.
 pub(crate) struct Table {
     path: PathBuf,
-    writer: csv::Writer<Stream>,
-    text: String,
+    quotes: csv::QuoteStyle,
+    stream: BufWriter<Stream>,
 }
+
+/// Rows of `contact.csv` that are formatted at once.
+const SHARE: usize = 64;
 
 impl Table {
     pub(crate) fn new(path: PathBuf, stream: Stream) -> Self {
         // A line of the log is one cell as it is.
         let is_log = path.extension().is_some_and(|extension| extension == "jsonl");
         let quotes = if is_log { csv::QuoteStyle::Never } else { csv::QuoteStyle::Necessary };
-        let mut builder = csv::WriterBuilder::new();
-        builder.quote_style(quotes).terminator(csv::Terminator::Any(b'\n'));
-        Self { path, writer: builder.from_writer(stream), text: String::new() }
+        Self { path, quotes, stream: BufWriter::new(stream) }
     }
 
     pub(crate) fn row<'a>(&mut self, cells: impl IntoIterator<Item = Value<'a>>) -> Result<(), RecordError> {
-        let failed = |error: csv::Error| RecordError::io("write", &self.path)(error.into());
-        for cell in cells {
-            self.text.clear();
-            // Writing to a text cannot fail.
-            let _ = match cell {
-                Value::Count(count) => write!(self.text, "{count}"),
-                Value::Real(real) => write!(self.text, "{real:?}"),
-                Value::Text(text) => write!(self.text, "{text}"),
-            };
-            self.writer.write_field(&self.text).map_err(failed)?;
-        }
-        self.writer.write_record(None::<&[u8]>).map_err(failed)
+        let mut lines = Lines::new(self.quotes);
+        let line = lines.add(cells).and_then(|()| lines.text());
+        self.append(line)
     }
 
-    pub(crate) fn contact(&mut self, row: &ContactRow, columns: ContactColumns) -> Result<(), RecordError> {
+    /// Appends rows of `contact.csv`; on a thread of a pool, all its threads format them.
+    pub(crate) fn contact(
+        &mut self,
+        rows: &[ContactRow],
+        columns: ContactColumns,
+    ) -> Result<(), RecordError> {
+        let quotes = self.quotes;
+        let text = |rows: &[ContactRow]| {
+            let mut lines = Lines::new(quotes);
+            rows.iter().try_for_each(|row| lines.add_contact(row, columns))?;
+            lines.text()
+        };
+        if rows.len() <= SHARE || rayon::current_thread_index().is_none() {
+            return self.append(text(rows));
+        }
+        let texts: Vec<_> = rows.par_chunks(SHARE).map(text).collect();
+        texts.into_iter().try_for_each(|text| self.append(text))
+    }
+
+    fn append(&mut self, text: io::Result<Vec<u8>>) -> Result<(), RecordError> {
+        text.and_then(|text| self.stream.write_all(&text)).map_err(RecordError::io("write", &self.path))
+    }
+
+    /// Passes all rows to the operating system.
+    pub(crate) fn flush(&mut self) -> Result<Extent, RecordError> {
+        self.stream.flush().map_err(RecordError::io("write", &self.path))?;
+        Ok(self.stream.get_ref().extent())
+    }
+
+    /// Flushes to the disk what was passed to the operating system.
+    pub(crate) fn sync(&self) -> Result<(), RecordError> {
+        self.stream.get_ref().sync().map_err(RecordError::io("write", &self.path))
+    }
+}
+
+/// Lines of a file, with one buffer for all numbers.
+struct Lines {
+    writer: csv::Writer<Vec<u8>>,
+    number: String,
+}
+
+impl Lines {
+    fn new(quotes: csv::QuoteStyle) -> Self {
+        let mut builder = csv::WriterBuilder::new();
+        builder.quote_style(quotes).terminator(csv::Terminator::Any(b'\n'));
+        Self { writer: builder.from_writer(Vec::new()), number: String::new() }
+    }
+
+    fn add<'a>(&mut self, cells: impl IntoIterator<Item = Value<'a>>) -> io::Result<()> {
+        for cell in cells {
+            self.number.clear();
+            // Writing to a text cannot fail.
+            let _ = match cell {
+                Value::Count(count) => write!(self.number, "{count}"),
+                Value::Real(real) => write!(self.number, "{real:?}"),
+                Value::Text(text) => {
+                    self.writer.write_field(text)?;
+                    continue;
+                }
+            };
+            self.writer.write_field(&self.number)?;
+        }
+        Ok(self.writer.write_record(None::<&[u8]>)?)
+    }
+
+    fn add_contact(&mut self, row: &ContactRow, columns: ContactColumns) -> io::Result<()> {
         let mut row = row.clone();
-        self.row(row.cells(columns).into_iter().map(|cell| match cell.value {
+        self.add(row.cells(columns).into_iter().map(|cell| match cell.value {
             ContactValue::Count(count) => Value::Count(*count),
             ContactValue::Real(real) => Value::Real(*real),
             ContactValue::Text(text) => Value::Text(text),
         }))
     }
 
-    /// Passes all rows to the operating system.
-    pub(crate) fn flush(&mut self) -> Result<Extent, RecordError> {
-        self.writer.flush().map_err(RecordError::io("write", &self.path))?;
-        Ok(self.writer.get_ref().extent())
-    }
-
-    /// Flushes to the disk what was passed to the operating system.
-    pub(crate) fn sync(&self) -> Result<(), RecordError> {
-        self.writer.get_ref().sync().map_err(RecordError::io("write", &self.path))
+    fn text(self) -> io::Result<Vec<u8>> {
+        self.writer.into_inner().map_err(csv::IntoInnerError::into_error)
     }
 }

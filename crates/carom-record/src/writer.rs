@@ -202,9 +202,9 @@ impl RunWriter {
         self.rows[0].row(row.iter().zip(&self.integer).map(value))
     }
 
-    /// Appends a row of `contact.csv`.
-    pub fn contact(&mut self, row: &ContactRow) -> Result<(), RecordError> {
-        self.rows[1].contact(row, self.columns)
+    /// Appends rows of `contact.csv`; on a thread of a pool, all its threads format them.
+    pub fn contact(&mut self, rows: &[ContactRow]) -> Result<(), RecordError> {
+        self.rows[1].contact(rows, self.columns)
     }
 
     /// Appends a line of `log.jsonl`.

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use carom_algebra::Threads;
-use carom_algebra::sums::{dot, sum};
+use carom_algebra::sums::dot;
 use carom_solid::{Ask, Configuration, Inverted, Past, Response};
 
 use super::body_instance::BodyInstance;
@@ -326,7 +326,7 @@ impl Model {
 
     /// Potential of constant gravity, −f·(y − X): zero in the reference configuration.
     pub fn potential(&self, y: &[f64]) -> f64 {
-        -sum([&self.gravity, y, &self.reference], |[f, y, x]| f * (y - x))
+        -self.threads.sums([&self.gravity, y, &self.reference], |[f, y, x]| [f * (y - x)])[0]
     }
 
     /// Largest angle by which a quadrature point of a body has turned, and largest norm of the

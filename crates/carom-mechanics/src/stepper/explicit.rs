@@ -30,8 +30,6 @@
 //! The first step, and one of another size, starts with v_{n−½} := v_n − Δt/2 M⁻¹f_n; a contact
 //! force at t_n then acts over a whole step.
 
-use carom_algebra::sums::{sum, sums};
-
 use super::finish::Finish;
 use super::increments::Increments;
 use super::tied_mass::TiedMass;
@@ -69,16 +67,10 @@ impl Explicit {
     }
 
     /// Updates the kinetic energy ½ Σ m v².
-    fn book_kinetic(&self, state: &mut State) {
-        state.ledger.kinetic = 0.5 * sum([&self.mass, &state.v], |[m, v]| m * v * v);
+    fn book_kinetic(&self, model: &Model, state: &mut State) {
+        let [doubled] = model.threads.sums([&self.mass, &state.v], |[m, v]| [m * v * v]);
+        state.ledger.kinetic = 0.5 * doubled;
     }
-}
-
-/// Works of contact and friction in a step, with the other sign, and the potential at its end.
-struct Works {
-    contact: f64,
-    friction: f64,
-    potential: f64,
 }
 
 impl Stepper for Explicit {
@@ -111,7 +103,7 @@ impl Stepper for Explicit {
             model.internal_force(&at, &mut next.f_internal, &mut next.materials)
         })
         .map_err(|(body, inverted)| Rejected::Inverted { body, inverted })?;
-        self.check_stability(start, &next, dt)?;
+        self.check_stability(model, start, &next, dt)?;
         model.loads_into(to, &next.y, &mut work.explicit.loads, &mut next.f_external)?;
         next.time = to;
         self.advance_half_step(model, &mut next, &start.half_step.velocity, dt, work, &mut report)?;
@@ -143,10 +135,10 @@ impl Explicit {
     /// Rejects a step that is certain to exceed the stability limit of the bodies as they are
     /// deformed: Rayleigh's quotient Δy·Δf_int/Δy·MΔy of the mean tangent is at most its largest
     /// ω², and beyond 4/Δt² only if that is. Motion that grows comes to consist of such modes.
-    fn check_stability(&self, start: &State, next: &State, dt: f64) -> Result<(), Rejected> {
+    fn check_stability(&self, model: &Model, start: &State, next: &State, dt: f64) -> Result<(), Rejected> {
         let moved =
             |[inverse_mass, before, now]: [f64; 3]| if inverse_mass > 0.0 { now - before } else { 0.0 };
-        let [stiffness, inertia] = sums(
+        let [stiffness, inertia] = model.threads.sums(
             [&self.mass, &self.inverse_mass, &start.y, &next.y, &start.f_internal, &next.f_internal],
             |[m, inverse, before, now, pulled, pulls]| {
                 let moved = moved([inverse, before, now]);
@@ -171,30 +163,26 @@ impl Explicit {
         book_materials(next);
         let in_contact = |state: &State| state.pairs.iter().flatten().any(|pair| pair.active);
         let touches = in_contact(start) || in_contact(next);
-        let velocity = &start.half_step.velocity;
         let work = |before: &[f64], now: &[f64]| {
-            let powers = velocity.iter().zip(before.iter().zip(now));
-            powers.map(|(v, (before, now))| dt * v * 0.5 * (before + now)).sum::<f64>()
+            // Forces of friction are empty without.
+            if before.is_empty() || now.is_empty() {
+                return 0.0;
+            }
+            let of = [&start.half_step.velocity[..], before, now];
+            let [work] = model.threads.sums(of, |[v, before, now]| [dt * v * 0.5 * (before + now)]);
+            work
         };
-        let of_contact = || Works {
-            contact: if touches { work(&start.f_contact, &next.f_contact) } else { 0.0 },
-            friction: if touches { work(&start.f_friction, &next.f_friction) } else { 0.0 },
-            potential: model.potential(&next.y),
-        };
-        // Twice the kinetic energy, and a·M a at both ends.
-        let of_inertia = || {
-            sums([&self.mass, &next.v, &next.a, &start.a], |[m, v, now, before]| {
-                [m * v * v, m * now * now, m * before * before]
-            })
-        };
-        let (works, [moving, now, before]) = model.threads.join(of_contact, of_inertia);
-        let lent = self.lent(model, next, dt, now) - self.lent(model, start, dt, before);
-        let ledger = &mut next.ledger;
         if touches {
-            ledger.contact_work -= works.contact - works.friction;
-            ledger.friction_work -= works.friction;
+            let friction = work(&start.f_friction, &next.f_friction);
+            next.ledger.contact_work -= work(&start.f_contact, &next.f_contact) - friction;
+            next.ledger.friction_work -= friction;
         }
-        ledger.potential = works.potential;
+        next.ledger.potential = model.potential(&next.y);
+        // Twice the kinetic energy, and a·M a at both ends.
+        let of = [&self.mass[..], &next.v, &next.a, &start.a];
+        let [moving, now, before] =
+            model.threads.sums(of, |[m, v, now, before]| [m * v * v, m * now * now, m * before * before]);
+        let lent = self.lent(model, next, dt, now) - self.lent(model, start, dt, before);
         let State { impulses, contact_forces, .. } = next;
         for ((before, now), impulse) in start.contact_forces.iter().zip(contact_forces).zip(impulses) {
             for i in 0..3 {
@@ -217,7 +205,7 @@ impl Explicit {
         let loads = if model.loads.is_empty() {
             0.0
         } else {
-            sum([&self.inverse_mass, &state.f_external], |[m, f]| m * f * f)
+            model.threads.sums([&self.inverse_mass, &state.f_external], |[m, f]| [m * f * f])[0]
         };
         (factor * inertia).min(SAFETY * SAFETY * state.ledger.strain + factor * loads)
     }
@@ -237,7 +225,7 @@ impl Explicit {
         let velocity = state.v.clone();
         let kinetic = state.ledger.kinetic;
         let last = state.half_step.dt;
-        let inertia = |state: &State| sum([&self.mass, &state.a], |[m, a]| m * a * a);
+        let inertia = |state: &State| model.threads.sums([&self.mass, &state.a], |[m, a]| [m * a * a])[0];
         let lent = self.lent(model, state, last, inertia(state));
         self.advance_half_step(model, state, &before, dt, work, report)?;
         if state.pairs.iter().flatten().all(|p| !p.active) {
@@ -245,7 +233,7 @@ impl Explicit {
             state.v = velocity;
         }
         // Half of the step of the contact force precedes t_n: a jump there.
-        self.book_kinetic(state);
+        self.book_kinetic(model, state);
         // A shorter step lends less, and what is not lent any more is created.
         if last > 0.0 {
             state.ledger.unbooked += self.lent(model, state, dt, inertia(state)) - lent;

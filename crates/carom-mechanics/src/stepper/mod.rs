@@ -20,7 +20,6 @@ pub use implicit::Implicit;
 pub use impulsive::Impulsive;
 pub(crate) use scratch::Scratch;
 
-use carom_algebra::sums::max_abs;
 use carom_contact::PairEvent;
 
 use crate::check::penetration::{Depths, Measured};
@@ -77,7 +76,7 @@ impl Accepted {
         for (what, values) in
             [("a position", &state.y), ("a velocity", &state.v), ("an acceleration", &state.a)]
         {
-            if max_abs(values).is_infinite() {
+            if model.threads.max_abs(values).is_infinite() {
                 return Err(Rejected::NotFinite { what });
             }
         }

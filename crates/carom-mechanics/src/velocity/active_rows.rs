@@ -2,7 +2,7 @@
 
 use carom_contact::{Pair, Rows};
 
-use crate::model::Model;
+use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
 use crate::state::State;
 
@@ -10,6 +10,31 @@ use crate::state::State;
 pub(crate) fn pressing(state: &State) -> impl Iterator<Item = (usize, usize)> + '_ {
     let pairs = state.pairs.iter().enumerate();
     pairs.flat_map(|(k, pairs)| (0..pairs.len()).filter(|&p| pairs[p].active).map(move |p| (k, p)))
+}
+
+/// Pairs that a thread measures.
+const SHARE: usize = 64;
+
+/// For each contact, a row for each pair at a state; that of a pair that is inactive, or cannot be
+/// measured, is open.
+pub fn active_rows(model: &Model, state: &State) -> Vec<Rows> {
+    let of_contact = |(contact, pairs): (&Contact, &Vec<Pair>)| {
+        let mut blocks = vec![Rows::new(model.dimension); pairs.len().div_ceil(SHARE)];
+        let shares = blocks.iter_mut().zip(pairs.chunks(SHARE));
+        model.threads.for_each(shares, |_, (rows, pairs)| {
+            for pair in pairs {
+                let is_measured =
+                    pair.active && contact.kinematics.measure(&mut pair.clone(), &state.y, rows).is_ok();
+                if !is_measured {
+                    rows.push_open();
+                }
+            }
+        });
+        let mut all = Rows::new(model.dimension);
+        blocks.iter().flat_map(Rows::iter).for_each(|row| all.push_row(row));
+        all
+    };
+    model.contacts.iter().zip(&state.pairs).map(of_contact).collect()
 }
 
 /// Rows of all active pairs at the state; those of inactive ones are open.

@@ -70,7 +70,7 @@ pub(crate) fn record(writer: &mut RunWriter, step: u64) -> Result<(), RecordErro
             rubbing: [0.0; 3],
             ..ContactRow::default()
         };
-        writer.contact(&row)?;
+        writer.contact(&[row])?;
     }
     if step % 7 == 3 {
         writer.log(&Event::new(step, time, "rejected", "too far").with("depth", 0.1 * time))?;

@@ -36,7 +36,7 @@ fn what_is_written_is_read_back() {
         rubbing: [0.0; 3],
         ..ContactRow::default()
     };
-    writer.contact(&row).unwrap();
+    writer.contact(std::slice::from_ref(&row)).unwrap();
     let event = Event::new(3, 0.1, "cycle", "line\nbreak").with("nodes", vec![1, 2]);
     writer.log(&event).unwrap();
     writer.fields(2, 0.2, &fields(2)).unwrap();
@@ -84,7 +84,7 @@ fn rows_of_contact_in_space_are_read_back() {
         ..ContactRow::default()
     };
     writer.history(&[0.0, 0.1, 0.0]).unwrap();
-    writer.contact(&row).unwrap();
+    writer.contact(std::slice::from_ref(&row)).unwrap();
     writer.finish(&mut Manifest { status: Status::Finished, ..of_space }).unwrap();
     let header = fs::read_to_string(directory.join("contact.csv")).unwrap();
     let columns = "step,time,contact,node,x,y,z,facet,xi,eta,gap,multiplier,pressure,normal_x,normal_y,\

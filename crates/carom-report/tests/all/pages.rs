@@ -282,7 +282,7 @@ fn pressed(directory: &Path) {
                 slip: 0.0,
                 ..ContactRow::default()
             };
-            writer.contact(&row).unwrap();
+            writer.contact(&[row]).unwrap();
         }
         writer
             .fields(u64::from(i), t, &FieldSet { points, blocks: vec![block], arrays, ..FieldSet::default() })

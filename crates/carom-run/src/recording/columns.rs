@@ -50,9 +50,9 @@ pub(super) struct Recorded {
     pub(super) yielding: Vec<usize>,
 }
 
-/// The row of the current state, in the order of
-/// [`history_columns`](carom_case::history_columns).
-pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<f64> {
+/// The row of the current state with the [`active_rows`](carom_mechanics::active_rows) of its pairs,
+/// in the order of [`history_columns`](carom_case::history_columns).
+pub(super) fn row(simulation: &Simulation, measured: &[Rows], since: &Since, of: &Recorded) -> Vec<f64> {
     let Recorded { weights, yielding } = of;
     let model = simulation.model();
     let state = simulation.state();
@@ -105,7 +105,7 @@ pub(super) fn row(simulation: &Simulation, since: &Since, of: &Recorded) -> Vec<
         row.extend(state.contact_forces.iter().flat_map(|f| f[..d].to_vec()));
     }
     if !model.supports.is_empty() || !model.ties.is_empty() {
-        let mut reaction = reactions(model, state);
+        let mut reaction = reactions(model, state, measured);
         let mut transmitted = reaction.clone();
         model.points.pass_on(&mut transmitted);
         for tie in &model.ties {
@@ -192,20 +192,14 @@ fn accelerations(state: &State) -> Cow<'_, [f64]> {
 }
 
 /// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext.
-fn reactions(model: &Model, state: &State) -> Vec<f64> {
+fn reactions(model: &Model, state: &State, measured: &[Rows]) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&accelerations(state), &mut force);
     for i in 0..force.len() {
         force[i] += state.f_internal[i] - model.gravity[i] - state.f_external[i];
     }
-    let mut rows = Rows::new(model.dimension);
-    for (contact, pairs) in model.contacts.iter().zip(&state.pairs) {
-        for pair in pairs.iter().filter(|p| p.active) {
-            rows.clear();
-            if contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok() {
-                rows.row(0).add_to(pair.lambda, &mut force);
-            }
-        }
+    for (rows, pairs) in measured.iter().zip(&state.pairs) {
+        rows.iter().zip(pairs).for_each(|(row, pair)| row.add_to(pair.lambda, &mut force));
     }
     each_slip(model, state, |_, _, traction, row| row.add_to(traction, &mut force));
     force

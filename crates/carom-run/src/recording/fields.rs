@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use carom_algebra::principal;
 use carom_case::Case;
 use carom_mechanics::model::{Model, past_of, von_mises};
-use carom_mechanics::{State, Surfaces};
+use carom_mechanics::{State, Surfaces, active_rows};
 use carom_record::{Block, Cell, CellArray, CellMaterials, FieldSet, LARGEST_VON_MISES, PointArray};
 use carom_solid::{Element, Mesh};
 
@@ -203,7 +203,7 @@ fn largest_von_mises(model: &Model, state: &State) -> Vec<f64> {
 
 fn pressures(surfaces: &Surfaces, model: &Model, state: &State) -> Vec<f64> {
     let mut at_nodes = vec![0.0; model.mass.nodes()];
-    for (node, pressure) in surfaces.pressures(model, state).largest() {
+    for (node, pressure) in surfaces.pressures(model, state, &active_rows(model, state)).largest() {
         at_nodes[node] = pressure;
     }
     at_nodes

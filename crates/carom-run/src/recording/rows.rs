@@ -2,9 +2,11 @@
 
 use carom_algebra::Vector;
 use carom_case::{Case, history_columns};
-use carom_contact::{self as contact, FrictionState, Pair, Tangential, length};
+use carom_contact::{self as contact, FrictionState, Pair, Row, Tangential, length};
 use carom_mechanics::model::{Contact, Model};
-use carom_mechanics::{GridReport, Simulation, State, Surfaces, each_slip, penetration};
+use carom_mechanics::{
+    GridReport, Pressures, Simulation, State, Surfaces, active_rows, each_slip, penetration,
+};
 use carom_record::{Column, ContactRow};
 
 use super::columns::{Recorded, Since, center_weights, row};
@@ -49,25 +51,65 @@ impl Rows {
 
     /// The row of the current state.
     pub fn row(&self, simulation: &Simulation) -> Vec<f64> {
-        row(simulation, &self.since, &self.recorded)
+        self.history(simulation, &active_rows(simulation.model(), simulation.state()))
     }
 
     /// The active contact nodes of the current state.
     pub fn contact<'a>(&self, simulation: &'a Simulation) -> ContactStates<'a> {
-        contact_rows(simulation.model(), &self.surfaces, simulation.state())
+        self.pairs(simulation, &active_rows(simulation.model(), simulation.state()))
+    }
+
+    /// [`row`](Self::row) and [`contact`](Self::contact), side by side.
+    pub(super) fn both<'a>(&self, simulation: &'a Simulation) -> (Vec<f64>, ContactStates<'a>) {
+        let model = simulation.model();
+        let measured = active_rows(model, simulation.state());
+        model.threads.join(|| self.history(simulation, &measured), || self.pairs(simulation, &measured))
+    }
+
+    fn history(&self, simulation: &Simulation, measured: &[contact::Rows]) -> Vec<f64> {
+        row(simulation, measured, &self.since, &self.recorded)
+    }
+
+    fn pairs<'a>(&self, simulation: &'a Simulation, measured: &[contact::Rows]) -> ContactStates<'a> {
+        contact_rows(simulation.model(), &self.surfaces, simulation.state(), measured)
     }
 }
 
-/// The active contact nodes of a state.
-pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &State) -> ContactStates<'a> {
-    let mut rows = Vec::new();
+/// Pairs of which a thread describes the states.
+const SHARE: usize = 64;
+
+/// The active contact nodes of a state with the rows of its pairs.
+fn contact_rows<'a>(
+    model: &'a Model,
+    surfaces: &Surfaces,
+    state: &State,
+    measured: &[contact::Rows],
+) -> ContactStates<'a> {
     if state.pairs.iter().flatten().all(|pair| !pair.active) {
-        return rows;
+        return Vec::new();
     }
-    let pressures = surfaces.pressures(model, state);
-    let has_field = model.contacts.iter().any(|contact| contact.kinematics.is_of_field(0));
+    let described = Described {
+        model,
+        state,
+        pressures: surfaces.pressures(model, state, measured),
+        measured,
+        rubbing: rubbing(model, state),
+        has_field: model.contacts.iter().any(|contact| contact.kinematics.is_of_field(0)),
+    };
+    let pairs = state.pairs.iter().enumerate();
+    let active: Vec<[usize; 2]> = pairs
+        .flat_map(|(k, pairs)| (0..pairs.len()).filter(|&p| pairs[p].active).map(move |p| [k, p]))
+        .collect();
+    let mut rows = vec![ContactRow::default(); active.len()];
+    model.threads.for_each_block(&mut rows, SHARE, |first, rows| {
+        rows.iter_mut().zip(&active[first..]).for_each(|(row, [k, p])| *row = described.row(*k, *p));
+    });
+    rows
+}
+
+/// Of each contact with friction in space: friction on the secondary side of its pairs.
+fn rubbing(model: &Model, state: &State) -> Vec<Vec<[f64; 3]>> {
     let in_space = model.dimension == 3;
-    // Of each contact with friction in space: friction on the secondary side.
     let count = |(contact, pairs): (&Contact, &Vec<Pair>)| {
         if in_space && contact.friction.is_some() { pairs.len() } else { 0 }
     };
@@ -79,49 +121,65 @@ pub(super) fn contact_rows<'a>(model: &'a Model, surfaces: &Surfaces, state: &St
             (0..3).for_each(|i| rubbing[k][p][i] -= traction * along[i]);
         });
     }
-    for (k, ((contact, pairs), rubbing)) in model.contacts.iter().zip(&state.pairs).zip(rubbing).enumerate() {
-        let pressure_at = |node: usize| pressures.actual(k, node);
-        for (p, pair) in pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
-            let Tangential { traction, slip, .. } = pair.tangential;
-            let node = contact.kinematics.secondary()[pair.node];
-            let Opposed { gap, normal, size, shares, center } = opposed(contact, pair, state);
-            let traction = traction.map(|of| size * of);
-            let mean = |shares: &[(usize, f64)], of: &dyn Fn(usize) -> f64| {
-                shares.iter().map(|(node, share)| share * of(*node)).sum()
-            };
-            let coordinate = |shares: &[(usize, f64)], i: usize| {
-                let at = |node: usize| state.y[node * model.dimension + i];
-                if i < model.dimension { mean(shares, &at) } else { 0.0 }
-            };
-            rows.push(ContactRow {
-                step: state.step,
-                time: state.time,
-                contact: contact.name.as_str().into(),
-                node: node as u64,
-                point: std::array::from_fn(|i| coordinate(&shares, i)),
-                facet: pair.facet as u64,
-                xi: pair.xi,
-                eta: pair.eta,
-                gap,
-                multiplier: size * pair.lambda,
-                pressure: mean(&shares, &pressure_at),
-                nominal: pressures.nominal(k, node),
-                center: std::array::from_fn(|i| if has_field { coordinate(&center, i) } else { 0.0 }),
-                normal,
-                friction: match (&contact.friction, pair.tangential.friction_state) {
-                    _ if pair.node >= contact.kinematics.rubbing() => "none",
-                    (None, _) => "none",
-                    (_, FrictionState::Stick) => "stick",
-                    (_, FrictionState::Slip(_)) => "slip",
-                }
-                .into(),
-                traction: if in_space { length(traction) } else { traction[0] },
-                slip: if in_space { length(slip) } else { slip[0] },
-                rubbing: rubbing.get(p).copied().unwrap_or_default(),
-            });
+    rubbing
+}
+
+/// A state with what the rows of its pairs need.
+struct Described<'a, 's> {
+    model: &'a Model,
+    state: &'s State,
+    pressures: Pressures,
+    /// Of each contact, a row for each pair.
+    measured: &'s [contact::Rows],
+    rubbing: Vec<Vec<[f64; 3]>>,
+    has_field: bool,
+}
+
+impl<'a> Described<'a, '_> {
+    /// The row of a pair of a contact.
+    fn row(&self, k: usize, p: usize) -> ContactRow<'a> {
+        let Self { model, state, pressures, .. } = self;
+        let contact = &model.contacts[k];
+        let pair = &state.pairs[k][p];
+        let in_space = model.dimension == 3;
+        let Tangential { traction, slip, .. } = pair.tangential;
+        let node = contact.kinematics.secondary()[pair.node];
+        let Opposed { gap, normal, size, shares, center } = opposed(contact, pair, &self.measured[k].row(p));
+        let traction = traction.map(|of| size * of);
+        let mean = |shares: &[(usize, f64)], of: &dyn Fn(usize) -> f64| {
+            shares.iter().map(|(node, share)| share * of(*node)).sum()
+        };
+        let coordinate = |shares: &[(usize, f64)], i: usize| {
+            let at = |node: usize| state.y[node * model.dimension + i];
+            if i < model.dimension { mean(shares, &at) } else { 0.0 }
+        };
+        ContactRow {
+            step: state.step,
+            time: state.time,
+            contact: contact.name.as_str().into(),
+            node: node as u64,
+            point: std::array::from_fn(|i| coordinate(&shares, i)),
+            facet: pair.facet as u64,
+            xi: pair.xi,
+            eta: pair.eta,
+            gap,
+            multiplier: size * pair.lambda,
+            pressure: mean(&shares, &|node| pressures.actual(k, node)),
+            nominal: pressures.nominal(k, node),
+            center: std::array::from_fn(|i| if self.has_field { coordinate(&center, i) } else { 0.0 }),
+            normal,
+            friction: match (&contact.friction, pair.tangential.friction_state) {
+                _ if pair.node >= contact.kinematics.rubbing() => "none",
+                (None, _) => "none",
+                (_, FrictionState::Stick) => "stick",
+                (_, FrictionState::Slip(_)) => "slip",
+            }
+            .into(),
+            traction: if in_space { length(traction) } else { traction[0] },
+            slip: if in_space { length(slip) } else { slip[0] },
+            rubbing: self.rubbing[k].get(p).copied().unwrap_or_default(),
         }
     }
-    rows
 }
 
 /// The position of a pair's node, or of the contact point of its edge, relative to the other side.
@@ -140,15 +198,11 @@ struct Opposed {
     center: Vec<(usize, f64)>,
 }
 
-fn opposed(contact: &Contact, pair: &Pair, state: &State) -> Opposed {
-    let mut rows = contact::Rows::new(contact.facets[0].0.dimension());
-    let node = contact.kinematics.secondary()[pair.node];
-    let measured = contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows);
-    if measured.is_err() || rows.row(0).nodes.is_empty() {
-        let shares = vec![(node, 1.0)];
+fn opposed(contact: &Contact, pair: &Pair, row: &Row) -> Opposed {
+    if row.nodes.is_empty() {
+        let shares = vec![(contact.kinematics.secondary()[pair.node], 1.0)];
         return Opposed { gap: f64::NAN, normal: [f64::NAN; 3], size: 1.0, center: shares.clone(), shares };
     }
-    let row = rows.row(0);
     let gap = row.gap - contact.kinematics.allowed(pair.node);
     if !contact.kinematics.is_of_field(pair.node) {
         let shares: Vec<(usize, f64)> = row.shares().collect();
@@ -160,7 +214,7 @@ fn opposed(contact: &Contact, pair: &Pair, state: &State) -> Opposed {
         gap,
         normal: row.normal().map(|n| n / size),
         size,
-        shares: vec![(node, 1.0)],
+        shares: vec![(contact.kinematics.secondary()[pair.node], 1.0)],
         center: row.shares().map(|(node, share)| (node, share / all)).collect(),
     }
 }

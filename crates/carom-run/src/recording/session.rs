@@ -15,7 +15,7 @@ use super::fields::field_set;
 use super::frames::Frames;
 use super::log::{entry, in_units, relaxed, repairs};
 use super::outcome::{End, Outcome, Progress, RunError};
-use super::rows::{Rows, contact_rows};
+use super::rows::Rows;
 use super::stopped::{advice, explain};
 use super::tally::{Busy, Tally, checkpoint};
 use super::verdicts::judge;
@@ -202,9 +202,7 @@ impl<'a> Session<'a> {
     fn write_row(&mut self) -> Result<(), RunError> {
         let model = self.simulation.model();
         let state = self.simulation.state();
-        let rows = &self.rows;
-        let (values, contacts) =
-            model.threads.join(|| rows.row(&self.simulation), || contact_rows(model, &rows.surfaces, state));
+        let (values, contacts) = self.rows.both(&self.simulation);
         self.rows.since = Since::default();
         for (body, largest) in &mut self.rotations {
             for (largest, now) in largest.iter_mut().zip(model.turn(*body, &state.y)) {
@@ -214,7 +212,8 @@ impl<'a> Session<'a> {
             }
         }
         self.writer.history(&values)?;
-        contacts.iter().try_for_each(|row| self.writer.contact(row))?;
+        let writer = &mut self.writer;
+        model.threads.within(|| writer.contact(&contacts))?;
         Ok(())
     }
 
