@@ -20,15 +20,26 @@ const TOUCHES: f64 = 1e-9;
 pub(crate) struct Found {
     pub(crate) pairs: Vec<Vec<Pair>>,
     pub(crate) slid: BTreeMap<(usize, usize), FrictionState>,
+    /// Of each contact, whether the other run kept its sides apart where they are now.
+    pub(crate) kept_apart: Vec<bool>,
 }
 
 /// The pairs of a model at positions `y`, from the other run and its last state.
-pub(crate) fn found(case: &Case, model: &Model, y: &[f64], old: &Case, state: &State) -> Found {
-    let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new() };
+/// `free`: contacts whose obstacle is free and goes on where it was.
+pub(crate) fn found(
+    case: &Case,
+    model: &Model,
+    y: &[f64],
+    old: &Case,
+    state: &State,
+    free: &[usize],
+) -> Found {
+    let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new(), kept_apart: Vec::new() };
     let before = counterparts(case, model, y, old, state);
     for (own, (spec, contact)) in case.contacts.iter().zip(&model.contacts).enumerate() {
         let Some(before) = before[own] else {
             found.pairs.push(Vec::new());
+            found.kept_apart.push(false);
             continue;
         };
         let pressed = state.pairs.get(before).map_or(&[][..], Vec::as_slice);
@@ -36,7 +47,9 @@ pub(crate) fn found(case: &Case, model: &Model, y: &[f64], old: &Case, state: &S
         let goes_on =
             other.method == spec.method && other.enforcement.is_exact() == spec.enforcement.is_exact();
         let stays = other.primary == spec.primary && other.motion.is_fixed() && spec.motion.is_fixed();
-        let pairs = if goes_on && stays {
+        // Springs may press at any depth.
+        found.kept_apart.push(stays || free.contains(&own) || !spec.enforcement.is_exact());
+        let pairs = if goes_on && (stays || free.contains(&own)) {
             pressed.to_vec()
         } else if goes_on {
             still_closed(model, contact, y, pressed)

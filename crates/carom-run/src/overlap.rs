@@ -141,7 +141,7 @@ pub(crate) fn keep(case: &Case, model: &mut Model) {
 }
 
 /// Distance between the first corners of the longest facet.
-fn longest(facets: &[Vec<usize>], y: &[f64], d: usize) -> f64 {
+pub(crate) fn longest(facets: &[Vec<usize>], y: &[f64], d: usize) -> f64 {
     let length = |facet: &Vec<usize>| {
         let [from, to] = [0, 1].map(|corner| facet.get(corner).map_or(0, |node| node * d));
         (0..d).map(|i| (y[from + i] - y[to + i]).powi(2)).sum::<f64>().sqrt()

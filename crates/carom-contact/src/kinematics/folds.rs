@@ -16,7 +16,7 @@
 //! its own.
 //!
 //! A slit that is closed turns by −180° at its tip, and a sharp corner by nearly +180°. Which of
-//! both a joint is follows from the angle of the body at its node in the reference configuration.
+//! both a joint is follows from the angle of the body at its node.
 //!
 //! The boundaries of a hole and of its body are separated by material and cannot meet; pieces
 //! without a common cell always can.
@@ -107,10 +107,14 @@ impl Folds {
                 starts.push(order.len());
             }
         }
-        let joints: Vec<f64> =
-            (0..count).map(|facet| joint(surface, facet, Places::new(reference, 2))).collect();
+        let at_start = Places::new(reference, 2);
+        let turn = |facet| {
+            let next = surface.neighbour(facet, true);
+            next.map_or(0.0, |next| joint(surface, [facet, next], at_start, 0.0))
+        };
+        let joints: Vec<f64> = (0..count).map(turn).collect();
         let mut turns = Turns::default();
-        turns.update_loops(&order, &starts, &joints, surface, Places::new(reference, 2));
+        turns.update_loops(&order, &starts, &joints, surface, at_start);
         for (run, ends) in starts.windows(2).enumerate() {
             order[ends[0]..ends[1]].rotate_left(turns.best_start(run, ends[0]..ends[1]));
         }
@@ -219,14 +223,15 @@ fn nearest_to(other: f64, angle: f64) -> f64 {
     angle + 2.0 * PI * ((other - angle) / (2.0 * PI)).round()
 }
 
-/// Turn of the tangent at the joint after a facet: π less the angle of the body there. A closed
+/// Turn of the tangent at the joint of a facet and the next one: π less the angle of the body there. A closed
 /// slit and a sharp corner differ in it by a whole turn, and in what a node sees of its boundary.
-fn joint(surface: &Surface, facet: usize, y: Places) -> f64 {
-    let Some(next) = surface.neighbour(facet, true) else { return 0.0 };
+/// Facets of a fold that closes may pass each other by a little at its crease. `before`: the turn
+/// in another configuration, from which the joint has not turned by half a turn where it is blunt.
+fn joint(surface: &Surface, [facet, next]: [usize; 2], y: Places, before: f64) -> f64 {
     let kink = surface.kink(facet, next, y);
-    let turn = kink.sine.atan2(kink.cosine);
     let turns_back = kink.cosine < TIP && surface.is_whole();
-    if turns_back { nearest_to(PI - surface.seen_from(surface.facet(next).nodes[0], y), turn) } else { turn }
+    let near = if turns_back { PI - surface.seen_from(surface.facet(next).nodes[0], y) } else { before };
+    nearest_to(near, kink.sine.atan2(kink.cosine))
 }
 
 impl Turns {
@@ -256,8 +261,7 @@ impl Turns {
                 self.start.push(turn);
                 self.within.push(within);
                 turn += within;
-                let kink = surface.kink(facet, facets[(k + 1) % facets.len()], y);
-                turn += nearest_to(joints[facet], kink.sine.atan2(kink.cosine));
+                turn += joint(surface, [facet, facets[(k + 1) % facets.len()]], y, joints[facet]);
             }
             self.total.push(turn);
         }

@@ -121,7 +121,15 @@ impl NodeToFacet {
     /// depth.
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
-        Self { allowed, ..self }
+        let mut allowed = Self { allowed, ..self };
+        allowed.search_to_depth();
+        allowed
+    }
+
+    /// Nodes are found up to the depths that they may have.
+    fn search_to_depth(&mut self) {
+        let deepest = (0..self.secondary.len()).map(|place| self.slack(place)).fold(0.0, f64::max);
+        self.tools.get_mut().unwrap_or_else(PoisonError::into_inner).search.allow(deepest);
     }
 
     /// Contact of circles around the nodes, whose gaps are smaller by their radii.
@@ -322,6 +330,7 @@ impl Kinematics for NodeToFacet {
 
     fn keep(&mut self, depths: &[f64]) {
         self.kept = depths.to_vec();
+        self.search_to_depth();
     }
 
     fn kept(&self, node: usize) -> f64 {

@@ -228,6 +228,8 @@ pub(crate) struct Search {
     apart: Apart,
     /// Distance from the paths of the nodes within which facets are found.
     reach: f64,
+    /// The largest depth that a node may have without contact: it must be near its facet there.
+    deepest: f64,
 }
 
 impl Search {
@@ -236,12 +238,17 @@ impl Search {
         let hull = Hull::line(surface.shape.nodes(), 1.0);
         let both = surface.nodes.iter().chain(nodes).copied();
         let apart = Apart::new(both, surface.shape.dimension(), hull.weight());
-        Self { hull, tree: Tree::default(), found: Vec::new(), apart, reach: 0.0 }
+        Self { hull, tree: Tree::default(), found: Vec::new(), apart, reach: 0.0, deepest: 0.0 }
     }
 
     /// Finds facets up to a distance from the paths of the nodes.
     pub(crate) fn reach_out(&mut self, reach: f64) {
         self.reach = reach;
+    }
+
+    /// Finds the facets behind which the nodes are up to this depth.
+    pub(crate) fn allow(&mut self, deepest: f64) {
+        self.deepest = deepest;
     }
 
     /// Whether no node comes near a facet, as far as it is known without [`Self::update`].
@@ -268,7 +275,7 @@ impl Search {
             let nodes = surface.facet(facet).nodes;
             let [old, new] = [before, now].map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
             let bounds = old.union(&new);
-            bounds.grown(margin * bounds.size())
+            bounds.grown((margin * bounds.size()).max(self.deepest))
         };
         self.tree.place(surface.all(), swept);
         let mut all = Bounds::EMPTY;

@@ -69,7 +69,19 @@ impl Probe {
                 Quantity::Displacement(i) => nodal(y, *i) - nodal(reference, *i),
                 Quantity::Velocity(i) => nodal(v, *i),
                 Quantity::Acceleration(i) => nodal(a, *i),
-                stress => self.mean(part.body.as_ref(), part.of(y), &past, *stress),
+                // Of the mean stress: means of its values in cells would not be that of any stress.
+                Quantity::VonMises => {
+                    let mean = |i, j| self.mean(&*part.body, part.of(y), &past, Quantity::Stress(i, j));
+                    let mut stress = [[0.0; 3]; 3];
+                    for i in 0..3 {
+                        for j in i..3 {
+                            stress[i][j] = mean(i, j);
+                            stress[j][i] = stress[i][j];
+                        }
+                    }
+                    von_mises(&stress)
+                }
+                other => self.mean(&*part.body, part.of(y), &past, *other),
             });
         }
     }
@@ -93,7 +105,6 @@ impl Probe {
                 (_, Err(_)) => None,
                 (_, Ok(p)) => Some(match quantity {
                     Quantity::Stress(i, j) => p.cauchy[i][j],
-                    Quantity::VonMises => von_mises(&p.cauchy),
                     Quantity::Strain(i, j) => p.strain[i][j],
                     Quantity::PlasticStrain => p.plastic_strain,
                     Quantity::Yielded => p.yielded,

@@ -176,6 +176,12 @@ impl Explicit {
             let friction = work(&start.f_friction, &next.f_friction);
             next.ledger.contact_work -= work(&start.f_contact, &next.f_contact) - friction;
             next.ledger.friction_work -= friction;
+            if model.contacts.iter().any(|contact| contact.restitution > 0.0) {
+                // What a force returns here it took in the step before.
+                let of = [&start.half_step.velocity[..], &start.f_contact];
+                let [taken] = model.threads.sums(of, |[v, force]| [dt * v * 0.5 * force]);
+                next.ledger.unbooked += f64::max(0.0, -taken);
+            }
         }
         next.ledger.potential = model.potential(&next.y);
         // Twice the kinetic energy, and a·M a at both ends.
@@ -225,21 +231,28 @@ impl Explicit {
         let velocity = state.v.clone();
         let kinetic = state.ledger.kinetic;
         let last = state.half_step.dt;
-        let inertia = |state: &State| model.threads.sums([&self.mass, &state.a], |[m, a]| [m * a * a])[0];
-        let lent = self.lent(model, state, last, inertia(state));
+        let inertia = |a: &[f64]| model.threads.sums([&self.mass, a], |[m, a]| [m * a * a])[0];
+        // Before the first step nothing is lent but by the forces without contact.
+        let lent = if last > 0.0 {
+            self.lent(model, state, last, inertia(&state.a))
+        } else {
+            self.lent(model, state, dt, inertia(&free))
+        };
         self.advance_half_step(model, state, &before, dt, work, report)?;
         if state.pairs.iter().flatten().all(|p| !p.active) {
             // Without contact v_n remains bitwise unchanged.
             state.v = velocity;
         }
-        // Half of the step of the contact force precedes t_n: a jump there.
+        // Half of the step of the contact force precedes t_n: a jump there, which works like the
+        // first half of every step.
         self.book_kinetic(model, state);
         // A shorter step lends less, and what is not lent any more is created.
-        if last > 0.0 {
-            state.ledger.unbooked += self.lent(model, state, dt, inertia(state)) - lent;
-        }
+        state.ledger.unbooked += self.lent(model, state, dt, inertia(&state.a)) - lent;
         report.begun = state.ledger.kinetic - kinetic;
-        state.ledger.contact_work += report.begun;
+        let work = |force: &[f64]| 0.5 * dt * before.iter().zip(force).map(|(v, f)| v * f).sum::<f64>();
+        let friction = work(&state.f_friction);
+        state.ledger.contact_work -= work(&state.f_contact) - friction;
+        state.ledger.friction_work -= friction;
         for (impulse, force) in state.impulses.iter_mut().zip(&state.contact_forces) {
             for i in 0..3 {
                 impulse[i] += 0.5 * dt * force[i];

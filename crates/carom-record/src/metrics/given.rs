@@ -129,18 +129,21 @@ pub(crate) fn count_as_one(contacts: &[ContactFacts]) -> bool {
     contacts.len() < 2 || bodies.len() == 1 && contacts.iter().all(|of| of.primary.is_none())
 }
 
-/// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
+/// Magnitude of the contact force in every row; of contacts that do not count as one, that of the
+/// contact with the largest one.
 fn force(history: &History, contacts: &[ContactFacts]) -> Vec<f64> {
     if count_as_one(contacts) {
         return total_force(history);
     }
     let of_contacts = contacts.iter().map(|of| norms(&vector(history, &format!("{}.force", of.name))));
-    let larger = |one: Vec<f64>, other: Vec<f64>| one.iter().zip(&other).map(|(a, b)| a.max(*b)).collect();
+    let peak = |force: &[f64]| force.iter().copied().fold(0.0, f64::max);
+    let larger = |one: Vec<f64>, other: Vec<f64>| if peak(&other) > peak(&one) { other } else { one };
     let largest = of_contacts.filter(|force| !force.is_empty()).reduce(larger);
     largest.unwrap_or_else(|| total_force(history))
 }
 
-/// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
+/// Magnitude of the contact force in every row; of contacts that do not count as one, that of the
+/// contact with the largest one.
 pub fn contact_force(run: &Run) -> Vec<f64> {
     force(&run.history, &run.manifest.facts.contacts)
 }

@@ -272,8 +272,8 @@ pub const WARNINGS: [Entry; 33] = [
     },
     Entry {
         id: "hidden-energy",
-        why: "the total energy does not rise, because friction dissipates as much as was created: bodies may hop, and \
-              friction may dissipate more than the energy that was available",
+        why: "the total energy does not rise, because friction or plastic flow dissipates as much as was created: they may \
+              dissipate more than the energy that was available, and bodies may hop",
         advice: "a scheme with damping at high frequencies or one that conserves energy; a shorter step does not always help",
         rule: Rule::Record(record::hidden_energy),
     },

@@ -292,36 +292,42 @@ pub(super) fn energy_created(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     share.map(|share| Found::of_the_run(what(share))).into_iter().collect()
 }
 
-/// Energy that is created while friction takes as much: the rise of total − external_work −
-/// friction_work above its running minimum, judged against the energy scale, or friction's work if
-/// that is more. Not given where the energy as a whole shows it.
+/// Energy that is created while friction or plastic flow takes as much: the rise of total −
+/// external_work − friction_work − plastic_work above its running minimum, judged against the
+/// energy scale, or what they took if that is more. Not given where the energy as a whole shows it.
 pub(super) fn hidden_energy(case: &Case, model: &Model, run: &Run) -> Vec<Found> {
     let history = &run.history;
-    let columns =
-        ["total", "external_work", "friction_work", "energy_scale"].map(|name| history.column(name));
-    let [Some(total), Some(work), Some(friction), Some(scale)] = columns else { return Vec::new() };
+    let columns = ["total", "external_work", "energy_scale"].map(|name| history.column(name));
+    let [Some(total), Some(work), Some(scale)] = columns else { return Vec::new() };
     if case.time.scheme.is_static() || !energy_created(case, model, run).is_empty() {
         return Vec::new();
     }
+    let [friction, flow] = ["friction_work", "plastic_work"]
+        .map(|name| history.column(name).map_or_else(|| vec![0.0; total.len()], <[f64]>::to_vec));
     let mut lowest = f64::INFINITY;
     let mut most = 0.0;
     let mut at = 0;
     for row in 0..total.len() {
-        let energy = total[row] - work[row] - friction[row];
+        let energy = total[row] - work[row] - friction[row] - flow[row];
         lowest = lowest.min(energy);
         if energy - lowest > most {
             (most, at) = (energy - lowest, row);
         }
     }
-    let largest =
-        friction.iter().copied().chain(scale.last().copied()).fold(0.0, |a, b| f64::max(a, b.abs()));
-    // Without friction there is nothing to hide it: means of steps miss work.
-    if most <= MUCH_CREATED * largest || friction[at] >= 0.0 {
+    let taken = |row: usize| -(friction[row] + flow[row]);
+    let largest = (0..total.len()).map(taken).chain(scale.last().copied()).fold(0.0, f64::max);
+    // Without them there is nothing to hide it: means of steps miss work.
+    if most <= MUCH_CREATED * largest || taken(at) <= 0.0 {
         return Vec::new();
     }
-    let [made, taken] = [most, -friction[at]].map(|energy| short(100.0 * energy / largest));
+    let by = match [friction[at] < 0.0, flow[at] < 0.0] {
+        [true, true] => "friction and plastic flow",
+        [true, false] => "friction",
+        _ => "plastic flow",
+    };
+    let [made, taken] = [most, taken(at)].map(|energy| short(100.0 * energy / largest));
     let what = format!(
-        "scheme and contact created {made} % of its energy scale until t = {}, where friction took {taken} %",
+        "scheme and contact created {made} % of its energy scale until t = {}, where {by} took {taken} %",
         short(history.times()[at])
     );
     vec![Found::of_the_run(what)]

@@ -1,6 +1,8 @@
 //! Contacts that go on from another run: under other names, at other places.
 
-use super::common::{finish, simulation};
+use carom_run::Setup;
+
+use super::common::{case, finish, simulation};
 use super::loads::time;
 use super::restart::initial_state;
 
@@ -89,4 +91,61 @@ fn contacts_go_on_under_other_names() {
         assert!((now_floor[1] - floor[1]).abs() < 1e-6 * floor[1], "{now_floor:?} {floor:?}");
         run.step().unwrap();
     }
+}
+
+/// A disc in flight beside a free plane.
+fn flight(plane: &str, more: &str, initial: &str) -> String {
+    let moves = if initial.is_empty() { "velocity = [0.3, -0.4]" } else { "" };
+    format!(
+        r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 300.0, poisson = 0.3 }}]
+[[body]]
+name = "disc"
+material = "m"
+element = "T6"
+mesh = {{ shape = "disc", radius = 0.5, center = [0.0, 0.6], size = 0.25 }}
+{moves}
+[[contact]]
+name = "plane"
+secondary = "disc.arc"
+primary = {{ plane = {{ point = [0.0, {plane}], normal = [0.0, 1.0] }}, mass = 0.3{more} }}
+[time]
+end = 0.1
+step = 0.01
+scheme = {{ kind = "newmark", beta = 0.25, gamma = 0.5 }}
+{initial}
+"#
+    )
+}
+
+/// A free obstacle goes on where it was, with the velocity that it had.
+#[test]
+fn a_free_obstacle_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = flight("-3.0", ", velocity = [0.0, 0.5]", "");
+    let initial = initial_state(&first, &folder.path().join("first"));
+    let before = finish(simulation(&first, &[""; 0]));
+    let after = simulation(&flight("-3.0", "", &initial), &[""; 0]);
+    let obstacle = before.model().parts[1].first_node * 2;
+    assert!((before.state().y[obstacle + 1] + 2.95).abs() < 1e-9);
+    for (was, is) in [(&before.state().y, &after.state().y), (&before.state().v, &after.state().v)] {
+        assert_eq!(was, is);
+    }
+    assert!((before.state().ledger.kinetic - after.state().ledger.kinetic).abs() < 1e-12);
+    let given = case(&flight("-3.0", ", velocity = [0.0, 0.5]", &initial), &[""; 0]);
+    let Err(problems) = Setup::new(&given).start() else { panic!("the velocity is given twice") };
+    assert!(format!("{problems:?}").contains("it goes on from the other run"), "{problems:?}");
+}
+
+/// A plane that the other run did not have may not stand in the body.
+#[test]
+fn a_start_inside_an_obstacle_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = flight("-3.0", "", "");
+    let initial = initial_state(&first, &folder.path().join("first"));
+    let inside = case(&flight("0.08", "", &initial), &[""; 0]);
+    let Err(problems) = Setup::new(&inside).start() else { panic!("it overlaps") };
+    assert!(format!("{problems:?}").contains("overlap at the start"), "{problems:?}");
+    simulation(&flight("0.05", "", &initial), &[""; 0]);
 }

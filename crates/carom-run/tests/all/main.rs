@@ -15,6 +15,7 @@ mod damage;
 mod dependent_gaps;
 mod edges;
 mod energy_momentum;
+mod explicit_contact;
 mod explicit_energy;
 mod faces;
 mod fallback;

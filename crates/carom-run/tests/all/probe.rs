@@ -73,3 +73,27 @@ scheme = { kind = "static" }
         }
     }
 }
+
+/// Where cells meet, the von Mises stress of a probe is that of its mean stress.
+#[test]
+fn the_von_mises_stress_is_that_of_the_recorded_stress() {
+    let text = SQUARE.replace(
+        "record = [\"sigma_yy\"]",
+        "record = [\"sigma_xx\", \"sigma_yy\", \"sigma_zz\", \"sigma_xy\", \"von_mises\"]",
+    );
+    let sim = simulation(&text, &[""; 0]);
+    let model = sim.model();
+    let bent: Vec<f64> = model
+        .reference
+        .as_chunks::<2>()
+        .0
+        .iter()
+        .flat_map(|[x, y]| [x + 0.3 * x * y, y + 0.1 * x * x])
+        .collect();
+    let mut values = Vec::new();
+    let zero = vec![0.0; bent.len()];
+    model.probes[1].values(&model.parts, &model.reference, [&bent, &zero, &zero], &[], &mut values);
+    let [xx, yy, zz, xy, mises] = values[..] else { panic!("{values:?}") };
+    let square = 0.5 * ((xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2)) + 3.0 * xy * xy;
+    assert!((mises - square.sqrt()).abs() < 1e-12 * mises, "{mises} {}", square.sqrt());
+}

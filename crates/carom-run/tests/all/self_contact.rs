@@ -302,3 +302,40 @@ fn a_piece_that_would_pass_another_one_within_a_step_strikes_it() {
     let difference = y.iter().zip(z).map(|(y, z)| (y - z).abs()).fold(0.0, f64::max);
     assert!(difference < 1e-9, "{difference:e}; impulses {a:?} {b:?}");
 }
+
+/// A ring of triangles that is pressed flat: its inner outline meets itself, facets at the crease
+/// pass each other by a little, and no node is deeper than a fiftieth of a facet.
+#[test]
+fn a_ring_that_is_pressed_flat_is_held_apart() {
+    let text = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 0.5, lambda = 300.0, mu = 100.0 }]
+[[body]]
+name = "ring"
+material = "m"
+element = "T6"
+mesh = { shape = "ring", inner = 0.42, outer = 0.5, center = [0.03, 0.5], size = 0.12 }
+[[contact]]
+name = "itself"
+between = ["ring"]
+[[contact]]
+name = "floor"
+secondary = "ring.outer"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[[contact]]
+name = "press"
+secondary = "ring.outer"
+primary = { plane = { point = [0.0, 1.0], normal = [0.0, -1.0] }, motion = { y = "-2.0*t" } }
+[time]
+end = 0.42
+step = 0.004
+scheme = { kind = "bathe", rho_inf = 0.0 }
+"#;
+    let mut sim = super::common::simulation(text, &[""; 0]);
+    let mut deepest = 0.0_f64;
+    while !sim.finished() {
+        deepest = deepest.max(sim.step().unwrap().penetration.all);
+    }
+    assert!(deepest < 0.02 * 0.12, "{deepest:e}");
+    assert!(sim.state().pairs[0].iter().any(|pair| pair.active));
+}

@@ -38,8 +38,9 @@ pub fn half_disc(element: Element, radius: f64, center: [f64; 2], size: f64) -> 
     Ok(elevate(Rings { n, sixths: 3 }.skeleton(radius, center), element))
 }
 
+/// Number of rings. A half is rounded up whatever its last digit, which depends on the unit.
 fn rings(radius: f64, size: f64) -> usize {
-    (radius / size).round().max(1.0) as usize
+    (radius / size + 1e-9).round().max(1.0) as usize
 }
 
 fn check(element: Element, radius: f64, center: [f64; 2], size: f64) -> Result<usize, MeshError> {

@@ -23,7 +23,7 @@ use super::boundary::Boundary;
 use super::crossing::SEPARATION;
 use super::folds::PatchFolds;
 use super::patch::{Feature, PatchPoint, place};
-use super::paths::{NOISE, Paths};
+use super::paths::{Around, NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Next, Sliding};
 use crate::kinematics::joint::OnFacets;
@@ -191,6 +191,12 @@ impl NodeToPatch {
 
     pub(super) fn slack(&self, place: usize) -> f64 {
         self.allowed(place) + self.kept(place)
+    }
+
+    /// Where facets are near nodes, with a margin relative to their size.
+    fn around(&self, margin: f64) -> Around {
+        let depth = (0..self.secondary.len()).map(|place| self.slack(place)).fold(0.0, f64::max);
+        Around { margin, depth }
     }
 
     pub(super) fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {
@@ -452,7 +458,7 @@ impl Kinematics for NodeToPatch {
         let repeats = recent.repeats(*margin, [before, now], separation);
         if !repeats {
             recent.begin(*margin, [before, now]);
-            paths.update(&self.primary, &self.hull, *margin, [before, now]);
+            paths.update(&self.primary, &self.hull, self.around(*margin), [before, now]);
             let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
             let nodes: Bounds = self.secondary.iter().flat_map(ends).collect();
             let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
@@ -467,7 +473,8 @@ impl Kinematics for NodeToPatch {
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { paths, recent, swept, .. } = &mut *tools;
         recent.forget();
-        paths.update(&self.primary, &self.hull, Pairing::default().margin, [before, now]);
+        let around = self.around(Pairing::default().margin);
+        paths.update(&self.primary, &self.hull, around, [before, now]);
         let mut near = Vec::new();
         let mut met = |&k: &usize| {
             let node = self.secondary[k];

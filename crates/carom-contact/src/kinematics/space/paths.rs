@@ -22,6 +22,15 @@ pub(super) struct Paths {
     start: Start,
 }
 
+/// Distance from a facet at which a node is near it.
+#[derive(Clone, Copy)]
+pub(super) struct Around {
+    /// Relative to the size of the facet's path.
+    pub(super) margin: f64,
+    /// The largest depth that a node may have without contact.
+    pub(super) depth: f64,
+}
+
 /// Positions and boxes of all facets at the start of a step, which several searches share.
 #[derive(Debug, Default)]
 struct Start {
@@ -50,12 +59,12 @@ impl Start {
 
 impl Paths {
     /// Updates the boxes to the motion of a step; those of the hierarchy are grown by `margin` of
-    /// their sizes.
+    /// their sizes, and at least by `depth`.
     pub(super) fn update(
         &mut self,
         primary: &Boundary,
         hull: &Hull,
-        margin: f64,
+        Around { margin, depth }: Around,
         [before, now]: [&[f64]; 2],
     ) {
         self.start.update(primary, hull, before);
@@ -63,7 +72,7 @@ impl Paths {
         self.tight.clear();
         self.tight.extend(boxes.map(|(facet, old)| old.union(&primary.bounds(hull, facet, now))));
         let tight = &self.tight;
-        self.tree.place(tight.len(), |facet| tight[facet].grown(margin * tight[facet].size()));
+        self.tree.place(tight.len(), |facet| tight[facet].grown((margin * tight[facet].size()).max(depth)));
     }
 
     /// The middle of a facet at the start of the step.

@@ -1,0 +1,100 @@
+//! Contact of explicit steps: nodes of the primary side, bodies that touch at the start, and
+//! restitution.
+
+use carom_run::Simulation;
+
+use super::common::{finish, simulation};
+
+/// The largest depth of a run in which a disc, the primary, strikes a coarse block.
+fn deepest(step: &str) -> f64 {
+    let text = format!(
+        r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }}]
+[[body]]
+name = "disc"
+material = "m"
+element = "T6"
+mass = "lumped"
+mesh = {{ shape = "disc", radius = 0.5, center = [0.13, 0.52], size = 0.1 }}
+velocity = [0.0, -1.0]
+[[body]]
+name = "block"
+material = "m"
+element = "T6"
+mass = "lumped"
+mesh = {{ shape = "rectangle", min = [-1.0, -0.5], max = [1.0, 0.0], cells = [4, 1] }}
+[[support]]
+on = ["block.bottom"]
+fix = ["x", "y"]
+[[contact]]
+name = "c"
+secondary = "block.top"
+primary = "disc.arc"
+[time]
+end = 0.2
+step = {step}
+scheme = {{ kind = "central-difference" }}
+"#
+    );
+    let mut sim = simulation(&text, &[""; 0]);
+    let mut deepest = 0.0_f64;
+    while !sim.finished() {
+        deepest = deepest.max(sim.step().unwrap().penetration.all);
+    }
+    deepest
+}
+
+/// Nodes of the primary may be a fiftieth of a facet of 0.5 deep, however slowly they approach.
+#[test]
+fn nodes_of_the_primary_are_held_at_their_depth() {
+    for step in ["1e-3", "5e-4"] {
+        let deepest = deepest(step);
+        assert!((deepest - 0.01).abs() < 1e-5, "{step}: {deepest}");
+    }
+}
+
+fn bar(gap: &str, contact: &str, scheme: &str) -> Simulation {
+    let text = format!(
+        r#"
+dimension = 1
+material = [{{ name = "m", law = "saint-venant-kirchhoff", density = 1.0, young = 100.0, poisson = 0.0 }}]
+[[body]]
+name = "bar"
+material = "m"
+element = "L2"
+mass = "lumped"
+mesh = {{ shape = "interval", min = 0.0, max = 1.0, cells = 10 }}
+velocity = [-1.0]
+[[contact]]
+name = "wall"
+secondary = "bar.left"
+primary = {{ plane = {{ point = [-{gap}], normal = [1.0] }} }}
+{contact}
+[time]
+end = 0.4
+step = 1e-4
+scheme = {{ kind = "{scheme}" }}
+"#
+    );
+    simulation(&text, &[""; 0])
+}
+
+/// The node that strikes, of mass 0.05, loses its energy, whether it touches at the start or not.
+#[test]
+fn what_touches_at_the_start_loses_the_energy_of_its_node() {
+    for gap in ["0.0", "0.0101"] {
+        let ledger = finish(bar(gap, "", "central-difference")).state().ledger.clone();
+        assert!((ledger.contact_work + 0.025).abs() < 1e-4, "{gap}: {}", ledger.contact_work);
+        assert!(ledger.dissipation().abs() < 1e-5, "{gap}: {:e}", ledger.dissipation());
+    }
+}
+
+/// The node is at rest on average over the step in which it turns: its energy comes back.
+#[test]
+fn restitution_creates_no_energy() {
+    let sim = finish(bar("0.0101", "restitution = 1.0", "paoli-schatzman"));
+    let ledger = &sim.state().ledger;
+    assert!(ledger.created.most() < 5e-3 * ledger.scale(), "{:e}", ledger.created.most());
+    assert!((ledger.total() - 0.5).abs() < 2e-3, "{}", ledger.total());
+}
