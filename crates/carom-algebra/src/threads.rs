@@ -94,8 +94,8 @@ impl Threads {
         self.for_each(items.chunks_mut(size), |k, block| work(k * size, block));
     }
 
-    /// Σ term(aᵢ, bᵢ, …) of several terms over vectors of the same length: the sums of blocks, added
-    /// in their order. Of short vectors the bits are those of [`sums`].
+    /// Σ term(aᵢ, bᵢ, …) of several terms over vectors of the same length: sums of blocks, added in
+    /// their order. Of short vectors the bits are those of [`sums`].
     pub fn sums<const K: usize, const T: usize>(
         &self,
         of: [&[f64]; K],

@@ -223,10 +223,11 @@ fn nearest_to(other: f64, angle: f64) -> f64 {
     angle + 2.0 * PI * ((other - angle) / (2.0 * PI)).round()
 }
 
-/// Turn of the tangent at the joint of a facet and the next one: π less the angle of the body there. A closed
-/// slit and a sharp corner differ in it by a whole turn, and in what a node sees of its boundary.
-/// Facets of a fold that closes may pass each other by a little at its crease. `before`: the turn
-/// in another configuration, from which the joint has not turned by half a turn where it is blunt.
+/// Turn of the tangent at the joint of a facet and the next one: π less the angle of the body
+/// there. A closed slit and a sharp corner differ in it by a whole turn, and in what a node sees of
+/// its boundary. Facets of a fold that closes may pass each other by a little at its crease.
+/// `before`: the turn in another configuration, from which a blunt joint has turned by less than
+/// half a turn.
 fn joint(surface: &Surface, [facet, next]: [usize; 2], y: Places, before: f64) -> f64 {
     let kink = surface.kink(facet, next, y);
     let turns_back = kink.cosine < TIP && surface.is_whole();

@@ -50,8 +50,9 @@ pub(super) struct Recorded {
     pub(super) yielding: Vec<usize>,
 }
 
-/// The row of the current state with the [`active_rows`](carom_mechanics::active_rows) of its pairs,
-/// in the order of [`history_columns`](carom_case::history_columns).
+/// The row of the current state, in the order of
+/// [`history_columns`](carom_case::history_columns). `measured`:
+/// [`active_rows`](carom_mechanics::active_rows) there.
 pub(super) fn row(simulation: &Simulation, measured: &[Rows], since: &Since, of: &Recorded) -> Vec<f64> {
     let Recorded { weights, yielding } = of;
     let model = simulation.model();
