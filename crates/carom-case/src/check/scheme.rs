@@ -101,7 +101,7 @@ impl Check<'_> {
         for (many, one, path, help) in supports.chain(obstacles).collect::<Vec<_>>() {
             let what = format!("moving {many} are not available with {}", spec.kind);
             let why = format!(
-                "the work and the impulse of a moving {one} are implemented for implicit schemes only"
+                "the work and the impulse of a moving {one} are not implemented for explicit schemes and those with impulses"
             );
             self.add(path, what, why, help);
         }

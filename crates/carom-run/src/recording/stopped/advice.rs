@@ -23,6 +23,8 @@ const LONGER: Remedy = (
 const DAMPED: Remedy = (Some(Kind::Damped), "more damping of high frequencies by the same scheme");
 const BATHE: Remedy = (Some(Kind::Bathe), "a scheme that dissipates what the mesh does not resolve");
 const PENALTY: Remedy = (Some(Kind::Penalty), "penalty springs, which have no active set that must converge");
+const AUGMENTED: Remedy =
+    (Some(Kind::Augmented), "an augmented Lagrangian, with which contacts may depend on each other");
 const MULTIPLIER: Remedy = (Some(Kind::Multiplier), "multipliers, which prevent penetration exactly");
 const STIFFER: Remedy = (Some(Kind::Stiffer), "stiffer springs");
 const SOFTER: Remedy = (Some(Kind::Softer), "softer springs, which a step resolves better");
@@ -62,8 +64,11 @@ const GUARD_OFF: Remedy = (
 const TABLE: &[(&str, &[Remedy])] = &[
     ("inverted-cell", &[INERTIA, OTHER_LAW, DAMPED, BATHE, FALLBACK, FINER, DEGREE, SHORTER]),
     ("contact-geometry", &[INERTIA, SHORTER, BATHE, PENALTY, FALLBACK, FINER, ROUNDED]),
-    ("no-convergence", &[INERTIA, OTHER_LAW, SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER]),
-    ("active-set-cycle", &[INERTIA, SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
+    (
+        "no-convergence",
+        &[INERTIA, OTHER_LAW, AUGMENTED, SHORTER, FULL, PENALTY, MULTIPLIER, BATHE, FALLBACK, FINER],
+    ),
+    ("active-set-cycle", &[INERTIA, AUGMENTED, SHORTER, PENALTY, BATHE, FALLBACK, FINER, ROUNDED]),
     (
         "linear-solver",
         &[

@@ -26,6 +26,8 @@ pub(super) enum Kind {
     Inertia,
     /// Springs of the default stiffness at the place.
     Penalty,
+    /// An augmented Lagrangian in place of multipliers.
+    Augmented,
     /// Springs ten times as stiff, or as soft.
     Stiffer,
     Softer,
@@ -115,6 +117,11 @@ impl<'a> Original<'a> {
                     let none = given.then(|| "persistency=none".to_owned());
                     std::iter::once("enforcement=penalty".to_owned()).chain(none).collect()
                 },
+            ),
+            Kind::Augmented if implicit || scheme.is_static() => self.each(
+                contact,
+                |c| plain(c) && c.enforcement == Enforcement::Multiplier,
+                |_| vec!["enforcement=augmented".to_owned()],
             ),
             Kind::Multiplier if implicit => self.each(
                 contact,
