@@ -6,16 +6,15 @@
 
 use std::collections::BTreeMap;
 
-use carom_case::{Case, InitialSpec, ObstacleMotion, Problem, Velocities};
+use carom_case::{Case, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model, Tie, past_of};
-use carom_mechanics::{DeepPlace, Grid, InitialState, State, inside};
+use carom_mechanics::{Grid, InitialState, State};
 use carom_record::{Manifest, Status, last_checkpoint};
 use carom_solid::Mesh;
 
 use crate::build;
+use crate::initial_obstacles::Continued;
 use crate::initial_pairs::{self, Found};
-use crate::overlap::longest;
-use crate::quantity::quantity;
 use crate::saved_state;
 
 /// The initial state of a manufactured motion.
@@ -107,12 +106,6 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         first += nodes;
     }
     // The nodes of moving obstacles come after the bodies.
-    let mut obstacles = BTreeMap::new();
-    let mut node = first;
-    for contact in &old.contacts {
-        obstacles.insert(&contact.name, (node, contact));
-        node += contact.motion.nodes(d);
-    }
     let carriers: usize = old.contacts.iter().map(|contact| contact.motion.nodes(d)).sum();
     if state.y.len() != (first + carriers) * d {
         return Err(unreadable(format!("its state has {} nodes, its meshes {first}", state.y.len() / d)));
@@ -160,67 +153,14 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
         }
     }
     carry(model, &mut before, &directory.to_string())?;
-    // Obstacles that follow formulas begin where those say; free ones go on.
-    let mut free = Vec::new();
-    for (k, contact) in case.contacts.iter().enumerate() {
-        let Some(part) = model.parts.iter().find(|part| part.is_rigid() && part.name == contact.name) else {
-            continue;
-        };
-        let dofs = part.first_node * d..(part.first_node + 1) * d;
-        let ObstacleMotion::Free { velocity, .. } = &contact.motion else { continue };
-        let Some((node, _)) = obstacles.get(&contact.name).filter(|(_, other)| {
-            matches!(other.motion, ObstacleMotion::Free { .. }) && other.primary == contact.primary
-        }) else {
-            if spec.velocities == Velocities::Keep {
-                before.v[dofs.clone()].copy_from_slice(&model.initial_velocity[dofs]);
-            }
-            continue;
-        };
-        if velocity.iter().any(|v| *v != 0.0) {
-            let what = format!("the obstacle of contact \"{}\" has an initial velocity", contact.name);
-            let why = "it goes on from the other run: [initial] sets its place and its velocity".to_owned();
-            return Err(vec![Problem::new(contact.path("primary.velocity"), what, why, "leave it out")]);
-        }
-        let from = node * d..(node + 1) * d;
-        before.y[dofs.clone()].copy_from_slice(&state.y[from.clone()]);
-        if spec.velocities == Velocities::Keep {
-            before.v[dofs].copy_from_slice(&state.v[from]);
-        }
-        free.push(k);
-    }
+    let free =
+        Continued { case, model, old: &old, state: &state, first }.go_on(spec.velocities, &mut before)?;
     let Found { pairs, slid, kept_apart } = initial_pairs::found(case, model, &before.y, &old, &state, &free);
-    if let Some(problem) = overlap(case, model, &before.y, &kept_apart) {
+    if let Some(problem) = initial_pairs::overlap(case, model, &before.y, &kept_apart) {
         return Err(vec![problem]);
     }
     (before.pairs, before.slid) = (pairs, slid);
     Ok(before)
-}
-
-/// Depth, relative to the longest facet, beyond which sides overlap that the other run did not keep
-/// apart.
-const DEEP: f64 = 1e-3;
-
-/// The problem of a contact that the other run did not have, or whose obstacle stands elsewhere
-/// now, if its bodies overlap.
-fn overlap(case: &Case, model: &Model, y: &[f64], kept_apart: &[bool]) -> Option<Problem> {
-    let found = inside(model, y, 0.0).into_iter().find(|place| {
-        let longest = longest(&model.contacts[place.contact].facets[0].1, y, model.dimension);
-        !kept_apart[place.contact] && place.depth > DEEP * longest
-    })?;
-    let DeepPlace { contact, node, depth, .. } = found;
-    let spec = &case.contacts[contact];
-    Some(Problem::new(
-        format!("contact[{}]", spec.entry),
-        format!(
-            "the bodies of contact \"{}\" overlap at the start by {}",
-            spec.name,
-            quantity(depth, &case.units.length)
-        ),
-        format!(
-            "the run of `initial.from` did not keep them apart there, where node {node} is inside; closing the overlap within one step would drive them apart"
-        ),
-        "place the obstacle where the bodies touch it, or give that run this contact",
-    ))
 }
 
 /// Memory of the materials of a model, as the run left it: for each body, of its materials there.

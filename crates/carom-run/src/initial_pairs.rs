@@ -8,13 +8,19 @@
 
 use std::collections::BTreeMap;
 
-use carom_case::{Case, ContactSpec, PrimarySpec};
+use carom_case::{Case, ContactSpec, PrimarySpec, Problem};
 use carom_contact::{FrictionState, Pair, Pairing, Rows};
-use carom_mechanics::State;
 use carom_mechanics::model::{Contact, Model};
+use carom_mechanics::{DeepPlace, State, inside};
+
+use crate::overlap::longest;
+use crate::quantity::quantity;
 
 /// Gap of nodes that touch, over L.
 const TOUCHES: f64 = 1e-9;
+/// Depth, relative to the longest facet, beyond which sides overlap that the other run did not keep
+/// apart.
+const DEEP: f64 = 1e-3;
 
 /// Pairs of each contact, and which of them stuck or slipped, by contact and pair.
 pub(crate) struct Found {
@@ -134,4 +140,27 @@ fn touching(model: &Model, contact: &Contact, y: &[f64]) -> Vec<Pair> {
         pair.active = is_measured && rows.row(0).gap <= TOUCHES * model.scale;
     }
     pairing.pairs
+}
+
+/// The problem of a contact that the other run did not have, or whose obstacle stands elsewhere
+/// now, if its bodies overlap.
+pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], kept_apart: &[bool]) -> Option<Problem> {
+    let found = inside(model, y, 0.0).into_iter().find(|place| {
+        let longest = longest(&model.contacts[place.contact].facets[0].1, y, model.dimension);
+        !kept_apart[place.contact] && place.depth > DEEP * longest
+    })?;
+    let DeepPlace { contact, node, depth, .. } = found;
+    let spec = &case.contacts[contact];
+    Some(Problem::new(
+        format!("contact[{}]", spec.entry),
+        format!(
+            "the bodies of contact \"{}\" overlap at the start by {}",
+            spec.name,
+            quantity(depth, &case.units.length)
+        ),
+        format!(
+            "the run of `initial.from` did not keep them apart there, where node {node} is inside; closing the overlap within one step would drive them apart"
+        ),
+        "place the obstacle where the bodies touch it, or give that run this contact",
+    ))
 }

@@ -4,6 +4,7 @@
 #[doc(hidden)]
 pub mod build;
 mod initial;
+mod initial_obstacles;
 mod initial_pairs;
 mod overlap;
 #[doc(hidden)]

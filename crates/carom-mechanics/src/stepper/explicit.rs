@@ -176,19 +176,22 @@ impl Explicit {
             let friction = work(&start.f_friction, &next.f_friction);
             next.ledger.contact_work -= work(&start.f_contact, &next.f_contact) - friction;
             next.ledger.friction_work -= friction;
-            if model.contacts.iter().any(|contact| contact.restitution > 0.0) {
-                // What a force returns here it took in the step before.
-                let of = [&start.half_step.velocity[..], &start.f_contact];
-                let [taken] = model.threads.sums(of, |[v, force]| [dt * v * 0.5 * force]);
-                next.ledger.unbooked += f64::max(0.0, -taken);
-            }
         }
         next.ledger.potential = model.potential(&next.y);
         // Twice the kinetic energy, and a·M a at both ends.
         let of = [&self.mass[..], &next.v, &next.a, &start.a];
         let [moving, now, before] =
             model.threads.sums(of, |[m, v, now, before]| [m * v * v, m * now * now, m * before * before]);
-        let lent = self.lent(model, next, dt, now) - self.lent(model, start, dt, before);
+        let lent_at_start = self.lent(model, start, dt, before);
+        let lent = self.lent(model, next, dt, now) - lent_at_start;
+        if touches && model.contacts.iter().any(|contact| contact.restitution > 0.0) {
+            // What a force returns here it took in the step before, and velocities in its middle
+            // have a part of it already.
+            let of = [&start.half_step.velocity[..], &start.f_contact];
+            let [taken] = model.threads.sums(of, |[v, force]| [dt * v * 0.5 * force]);
+            let in_the_middle = 0.125 * dt * dt * before - lent_at_start;
+            next.ledger.unbooked += f64::max(0.0, -taken - in_the_middle);
+        }
         let State { impulses, contact_forces, .. } = next;
         for ((before, now), impulse) in start.contact_forces.iter().zip(contact_forces).zip(impulses) {
             for i in 0..3 {

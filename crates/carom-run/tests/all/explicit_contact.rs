@@ -54,7 +54,7 @@ fn nodes_of_the_primary_are_held_at_their_depth() {
     }
 }
 
-fn bar(gap: &str, contact: &str, scheme: &str) -> Simulation {
+fn bar(cells: usize, gap: &str, contact: &str, scheme: &str) -> Simulation {
     let text = format!(
         r#"
 dimension = 1
@@ -64,7 +64,7 @@ name = "bar"
 material = "m"
 element = "L2"
 mass = "lumped"
-mesh = {{ shape = "interval", min = 0.0, max = 1.0, cells = 10 }}
+mesh = {{ shape = "interval", min = 0.0, max = 1.0, cells = {cells} }}
 velocity = [-1.0]
 [[contact]]
 name = "wall"
@@ -84,7 +84,7 @@ scheme = {{ kind = "{scheme}" }}
 #[test]
 fn what_touches_at_the_start_loses_the_energy_of_its_node() {
     for gap in ["0.0", "0.0101"] {
-        let ledger = finish(bar(gap, "", "central-difference")).state().ledger.clone();
+        let ledger = finish(bar(10, gap, "", "central-difference")).state().ledger.clone();
         assert!((ledger.contact_work + 0.025).abs() < 1e-4, "{gap}: {}", ledger.contact_work);
         assert!(ledger.dissipation().abs() < 1e-5, "{gap}: {:e}", ledger.dissipation());
     }
@@ -93,8 +93,8 @@ fn what_touches_at_the_start_loses_the_energy_of_its_node() {
 /// The node is at rest on average over the step in which it turns: its energy comes back.
 #[test]
 fn restitution_creates_no_energy() {
-    let sim = finish(bar("0.0101", "restitution = 1.0", "paoli-schatzman"));
+    let sim = finish(bar(4, "0.0101", "restitution = 1.0", "paoli-schatzman"));
     let ledger = &sim.state().ledger;
-    assert!(ledger.created.most() < 5e-3 * ledger.scale(), "{:e}", ledger.created.most());
+    assert!(ledger.created.most() < 1e-3 * ledger.scale(), "{:e}", ledger.created.most());
     assert!((ledger.total() - 0.5).abs() < 2e-3, "{}", ledger.total());
 }
