@@ -243,7 +243,10 @@ fn of_point(quantity: Quantity, label: &Labels) -> (&str, String) {
         Ax | Ay | Az => (&label.acceleration, format!("acceleration along {axis}")),
         VonMises => (&label.stress, "von Mises stress (from the Cauchy stress)".to_owned()),
         DetF => (&label.none, "volume ratio J".to_owned()),
-        PlasticStrain => (&label.none, "equivalent plastic strain".to_owned()),
+        PlasticStrain => (
+            &label.none,
+            "equivalent plastic strain, projected from the quadrature points: it may decrease".to_owned(),
+        ),
         Yielded => (&label.none, "share of the quadrature points of the cell that have yielded".to_owned()),
         strain if strain.word().starts_with("strain") => (&label.none, "Green–Lagrange strain".to_owned()),
         _ => (&label.stress, "Cauchy stress".to_owned()),

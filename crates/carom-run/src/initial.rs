@@ -60,12 +60,11 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
     };
     let manifest = Manifest::read(&spec.from).map_err(|e| unreadable(e.to_string()))?;
     if manifest.status != Status::Finished {
-        let help = "let it finish with `carom resume`";
-        return Err(wrong(
-            format!("the run {directory} is not finished"),
-            format!("its status is {:?}", manifest.status),
-            help,
-        ));
+        let (why, help) = match manifest.status {
+            Status::Failed => ("it stopped before its end", "give it an earlier `time.end`, before it stops"),
+            _ => ("it was interrupted, or is running", "let it finish with `carom resume`"),
+        };
+        return Err(wrong(format!("the run {directory} is not finished"), why.to_owned(), help));
     }
     let payload = last_checkpoint(&spec.from).map_err(|e| unreadable(e.to_string()))?;
     let version = |e: String| unreadable(format!("it was written by Carom {}: {e}", manifest.version));

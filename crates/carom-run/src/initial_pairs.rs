@@ -54,8 +54,9 @@ pub(crate) fn found(
             other.method == spec.method && other.enforcement.is_exact() == spec.enforcement.is_exact();
         let stays = other.primary == spec.primary && other.motion.is_fixed() && spec.motion.is_fixed();
         // Springs may press at any depth.
-        found.kept_apart.push(stays || free.contains(&own) || !spec.enforcement.is_exact());
-        let pairs = if goes_on && (stays || free.contains(&own)) {
+        let is_there = stays || free.contains(&own);
+        found.kept_apart.push(goes_on && is_there || !spec.enforcement.is_exact());
+        let pairs = if goes_on && is_there {
             pressed.to_vec()
         } else if goes_on {
             still_closed(model, contact, y, pressed)
@@ -142,8 +143,8 @@ fn touching(model: &Model, contact: &Contact, y: &[f64]) -> Vec<Pair> {
     pairing.pairs
 }
 
-/// The problem of a contact that the other run did not have, or whose obstacle stands elsewhere
-/// now, if its bodies overlap.
+/// The problem of a contact that the other run did not have, or had by springs or by the other
+/// method, or whose obstacle stands elsewhere now, if its bodies overlap.
 pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], kept_apart: &[bool]) -> Option<Problem> {
     let found = inside(model, y, 0.0).into_iter().find(|place| {
         let longest = longest(&model.contacts[place.contact].facets[0].1, y, model.dimension);
@@ -161,6 +162,6 @@ pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], kept_apart: &[bool]
         format!(
             "the run of `initial.from` did not keep them apart there, where node {node} is inside; closing the overlap within one step would drive them apart"
         ),
-        "place the obstacle where the bodies touch it, or give that run this contact",
+        "place the obstacle where the bodies touch it, or give that run this contact, with the same `method` and `enforcement`",
     ))
 }

@@ -312,7 +312,17 @@ impl MaterialKeys {
             }
             given => {
                 let had = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
-                let what = format!("the elastic constants are not a valid pair: {had}");
+                let missing = match given {
+                    ["young"] => Some("poisson"),
+                    ["poisson"] => Some("young"),
+                    ["lambda"] => Some("mu"),
+                    ["mu"] => Some("lambda"),
+                    _ => None,
+                };
+                let what = missing.map_or_else(
+                    || format!("the elastic constants are not a valid pair: {had}"),
+                    |missing| format!("`{missing}` is missing beside `{had}`"),
+                );
                 let help = elastic_help(mu, poisson, given);
                 // One from an option is too much, whatever the file says.
                 let is_set = |key: &&&str| v.table.get(key).is_some_and(|node| node.origin.source > 0);

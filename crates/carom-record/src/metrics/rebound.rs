@@ -50,9 +50,10 @@ impl<'a> Impact<'a> {
     /// The first impact of a run.
     ///
     /// # Errors
-    /// The reason why there is none: no contact, a striker that did not approach before it, or
-    /// strikes nothing but itself or several parties of different velocities, one that is tied to
-    /// another body, with which it moves, or the unknown velocity of a support.
+    /// The reason why there is none: no contact, a support that moves a body and changes its
+    /// velocity meanwhile, a striker that did not approach before it, or strikes nothing but itself
+    /// or several parties of different velocities, one that is tied to another body, with which it
+    /// moves, or the unknown velocity of a support.
     pub fn first(run: &'a Run) -> Result<Self, &'static str> {
         if run.manifest.facts.is_static {
             return Err("load steps have no velocities");
@@ -76,6 +77,13 @@ impl<'a> Impact<'a> {
         let fastest = parties.filter_map(|party| impact.velocity(run, party, before)).flatten();
         let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
         let still = AT_REST * fastest;
+        let turns = |end: usize| {
+            let mut bodies = impact.others.iter().copied().flatten().chain([striker]);
+            bodies.any(|body| is_turned(run, body, [before, end]))
+        };
+        if episode.end.is_some_and(turns) {
+            return Err("a support that moves a body changes its velocity meanwhile");
+        }
         let separation = episode.end.and_then(|end| impact.relative(run, end));
         impact.separation = separation.map(|w| if w.abs() <= still { 0.0 } else { w });
         let is_approach = impact.approach > still;
@@ -220,6 +228,14 @@ fn prescribed(run: &Run, body: &str, time: f64) -> Option<[Option<f64>; 3]> {
         }
     }
     Some(rates)
+}
+
+/// Whether supports move a body with another velocity in the second row than in the first one.
+fn is_turned(run: &Run, body: &str, rows: [usize; 2]) -> bool {
+    let [before, after] = rows.map(|row| prescribed(run, body, run.times()[row]));
+    let [Some(before), Some(after)] = [before, after] else { return false };
+    let differ = |(a, b): (f64, f64)| (a - b).abs() > AT_REST * (a.abs() + b.abs());
+    before.into_iter().zip(after).filter_map(|(a, b)| a.zip(b)).any(differ)
 }
 
 /// Rate of a displacement; none if it depends on the place, or is a function of a program.

@@ -14,7 +14,7 @@
 
 use carom_case::{Case, ContactSpec, ObstacleMotion, PrimarySpec};
 use carom_mechanics::model::{BodyInstance, Model};
-use carom_mechanics::{Overlap, Penetration, Undeclared};
+use carom_mechanics::{DeepPlace, Overlap, Penetration, Undeclared};
 
 use super::found::{Found, covered_by, short};
 
@@ -147,14 +147,25 @@ impl<'a> Scene<'a> {
             let time = from + (to - from) * f64::from(k) / f64::from(INSTANTS);
             let y = self.positions(time);
             let acting = self.contacts.inside(self.model, &y, INSIDE * self.model.scale);
-            if acting.iter().any(|place| covering.contains(&place.contact)) {
-                return None;
+            let mut covered = acting.iter().filter(|place| covering.contains(&place.contact)).peekable();
+            if covered.peek().is_some() {
+                // Behind a side that faces away from it, a node enters the body elsewhere.
+                return covered.all(|place| self.starts_behind(place)).then_some(time);
             }
             if self.undeclared.overlapping(self.model, &y).contains(&overlap) {
                 return Some(time);
             }
         }
         None
+    }
+
+    /// Whether a node of a contact is behind its side, though outside its body, at the start.
+    fn starts_behind(&self, place: &DeepPlace) -> bool {
+        let y = &self.model.initial_position;
+        let kinematics = &self.model.contacts[place.contact].kinematics;
+        let index = kinematics.secondary().iter().position(|&node| node == place.node);
+        let distance = index.and_then(|index| kinematics.signed_distance(index, y));
+        distance.is_some_and(|distance| distance < -INSIDE * self.model.scale)
     }
 
     /// When the extents of two bodies that move relative to each other begin and cease to overlap,

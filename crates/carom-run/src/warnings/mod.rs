@@ -191,7 +191,7 @@ pub const WARNINGS: [Entry; 33] = [
     },
     Entry {
         id: "open-contact",
-        why: "the bodies did not meet on its sides before the end, or not where these are",
+        why: "the bodies did not meet on the sides of the contact before the end, or not where these are",
         advice: "a later end, or sides that meet; nothing where the contact is a precaution",
         rule: Rule::Record(record::open_contact),
     },

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use carom_record::metrics::{of_rebound, of_run};
+use carom_record::metrics::{no_rebound, of_rebound, of_run};
 use carom_record::{Run, Source};
 use carom_run::recording::run;
 
@@ -101,6 +101,16 @@ fn the_same_in_every_frame() {
     let motion = wall(", motion = { x = \"-0.03*t\" }");
     let moving = of(BARS, &[&motion, away, "body.short.velocity=[-0.02]"]);
     assert!((moving - fixed).abs() < 1e-9 && (fixed - 1.0).abs() < 0.03, "{moving} {fixed}");
+}
+
+/// Where a support changes the velocity of a body meanwhile, the separation is its work.
+#[test]
+fn no_restitution_of_a_body_that_a_support_drives() {
+    let driven = "support=[{ on = [\"long.right\"], move = { x = \"-0.03*t + 0.001*t^2\" } }]";
+    let sets = [driven, "time.end=12.0", "body.short.velocity=[-0.02]", "body.long.velocity=[-0.03]"];
+    let run = record(BARS, &sets);
+    assert_eq!(restitution(&run), None);
+    assert!(no_rebound(&run).unwrap().contains("a support"), "{:?}", no_rebound(&run));
 }
 
 /// The force between two bars of one impedance, ρcv/2, lasts from t = 1, and stops the approach of

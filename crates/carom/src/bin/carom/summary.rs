@@ -86,7 +86,7 @@ fn text(outcome: &Outcome) -> String {
         .map(|line| format!("  {line}"));
     let mut lines: Vec<String> = std::iter::once(first).chain(indented).collect();
     if outcome.interrupted {
-        lines.push(format!("stopped by Ctrl-C; continue with: carom resume {directory}"));
+        lines.push(format!("interrupted; continue with: carom resume {directory}"));
     }
     lines.push(
         outcome.report.as_ref().map_or_else(|| directory.to_string(), |page| page.display().to_string()),

@@ -89,7 +89,7 @@ fn conclude(
     let damaged = outcome.study.rows.iter().chain(&outcome.study.members).any(Row::is_damaged);
     study_summary::print(&outcome, directory, page)?;
     if interrupted {
-        out::summary(&format!("stopped by Ctrl-C; continue with: carom resume {}", directory.display()))?;
+        out::summary(&format!("interrupted; continue with: carom resume {}", directory.display()))?;
     }
     Ok(match (interrupted, damaged) {
         (true, _) => Exit::Interrupted,

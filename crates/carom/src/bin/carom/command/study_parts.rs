@@ -79,7 +79,7 @@ fn plan(study: &Path, directory: &Path, slurm: bool, settle: bool) -> Result<Exi
         if !settled? {
             let place = directory.display();
             console::say(format_args!(
-                "stopped by Ctrl-C before the steps were found; remove {place} and plan the study again, or \
+                "interrupted before the steps were found; remove {place} and plan the study again, or \
                  compute all of it on this machine with: carom resume {place}"
             ));
             return Ok(Exit::Interrupted);
