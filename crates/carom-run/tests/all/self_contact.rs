@@ -327,7 +327,7 @@ name = "press"
 secondary = "ring.outer"
 primary = { plane = { point = [0.0, 1.0], normal = [0.0, -1.0] }, motion = { y = "-2.0*t" } }
 [time]
-end = 0.42
+end = 0.428
 step = 0.004
 scheme = { kind = "bathe", rho_inf = 0.0 }
 "#;
