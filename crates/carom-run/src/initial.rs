@@ -154,8 +154,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
     carry(model, &mut before, &directory.to_string())?;
     let free =
         Continued { case, model, old: &old, state: &state, first }.go_on(spec.velocities, &mut before)?;
-    let Found { pairs, slid, kept_apart } = initial_pairs::found(case, model, &before.y, &old, &state, &free);
-    if let Some(problem) = initial_pairs::overlap(case, model, &before.y, &kept_apart) {
+    let Found { pairs, slid, left } = initial_pairs::found(case, model, &before.y, &old, &state, &free);
+    if let Some(problem) = initial_pairs::overlap(case, model, &before.y, &left) {
         return Err(vec![problem]);
     }
     (before.pairs, before.slid) = (pairs, slid);

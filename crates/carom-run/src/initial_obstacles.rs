@@ -42,9 +42,7 @@ impl Continued<'_> {
             let dofs = part.first_node * d..(part.first_node + 1) * d;
             let keeps = velocities == Velocities::Keep;
             let Some(from) = self.dofs_of(contact) else {
-                if keeps {
-                    before.v[dofs.clone()].copy_from_slice(&self.model.initial_velocity[dofs]);
-                }
+                before.v[dofs.clone()].copy_from_slice(&self.model.initial_velocity[dofs]);
                 continue;
             };
             if velocity.iter().any(|v| *v != 0.0) {

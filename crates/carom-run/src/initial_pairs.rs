@@ -6,7 +6,7 @@
 //! or the reverse, or by the other method, nodes that touch are found anew: pairs of springs are
 //! nearly always dependent as constraints.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use carom_case::{Case, ContactSpec, PrimarySpec, Problem};
 use carom_contact::{FrictionState, Pair, Pairing, Rows};
@@ -21,13 +21,16 @@ const TOUCHES: f64 = 1e-9;
 /// Depth, relative to the longest facet, beyond which sides overlap that the other run did not keep
 /// apart.
 const DEEP: f64 = 1e-3;
+/// Depth, relative to the longest facet, that a contact of the same bodies leaves by another method
+/// or with its sides exchanged: more than the fiftieth of nodes of the primary.
+const LEFT: f64 = 0.03;
 
 /// Pairs of each contact, and which of them stuck or slipped, by contact and pair.
 pub(crate) struct Found {
     pub(crate) pairs: Vec<Vec<Pair>>,
     pub(crate) slid: BTreeMap<(usize, usize), FrictionState>,
-    /// Of each contact, whether the other run kept its sides apart where they are now.
-    pub(crate) kept_apart: Vec<bool>,
+    /// Of each contact, the depth relative to the longest facet that the other run may have left.
+    pub(crate) left: Vec<f64>,
 }
 
 /// The pairs of a model at positions `y`, from the other run and its last state.
@@ -40,12 +43,13 @@ pub(crate) fn found(
     state: &State,
     free: &[usize],
 ) -> Found {
-    let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new(), kept_apart: Vec::new() };
+    let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new(), left: Vec::new() };
     let before = counterparts(case, model, y, old, state);
     for (own, (spec, contact)) in case.contacts.iter().zip(&model.contacts).enumerate() {
         let Some(before) = before[own] else {
             found.pairs.push(Vec::new());
-            found.kept_apart.push(false);
+            let met = old.contacts.iter().any(|other| have_the_same_bodies(other, spec));
+            found.left.push(if met { left_by_another(spec) } else { DEEP });
             continue;
         };
         let pressed = state.pairs.get(before).map_or(&[][..], Vec::as_slice);
@@ -53,9 +57,12 @@ pub(crate) fn found(
         let goes_on =
             other.method == spec.method && other.enforcement.is_exact() == spec.enforcement.is_exact();
         let stays = other.primary == spec.primary && other.motion.is_fixed() && spec.motion.is_fixed();
-        // Springs may press at any depth.
         let is_there = stays || free.contains(&own);
-        found.kept_apart.push(goes_on && is_there || !spec.enforcement.is_exact());
+        found.left.push(match (is_there, goes_on) {
+            (true, true) => f64::INFINITY,
+            (true, false) => left_by_another(spec),
+            (false, _) => DEEP,
+        });
         let pairs = if goes_on && is_there {
             pressed.to_vec()
         } else if goes_on {
@@ -143,13 +150,27 @@ fn touching(model: &Model, contact: &Contact, y: &[f64]) -> Vec<Pair> {
     pairing.pairs
 }
 
-/// The problem of a contact that the other run did not have, or had by springs or by the other
-/// method, or whose obstacle stands elsewhere now, if its bodies overlap.
-pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], kept_apart: &[bool]) -> Option<Problem> {
-    let found = inside(model, y, 0.0).into_iter().find(|place| {
-        let longest = longest(&model.contacts[place.contact].facets[0].1, y, model.dimension);
-        !kept_apart[place.contact] && place.depth > DEEP * longest
-    })?;
+/// What a contact of the same bodies may have left, of another kind than this one. Springs press at
+/// any depth.
+fn left_by_another(spec: &ContactSpec) -> f64 {
+    if spec.enforcement.is_exact() { LEFT } else { f64::INFINITY }
+}
+
+/// Whether two contacts are between the same bodies, whichever is secondary.
+fn have_the_same_bodies(one: &ContactSpec, other: &ContactSpec) -> bool {
+    let bodies = |contact: &ContactSpec| contact.bodies().map(str::to_owned).collect::<BTreeSet<_>>();
+    one.primary.side().is_some() == other.primary.side().is_some() && bodies(one) == bodies(other)
+}
+
+/// The problem of a contact whose bodies overlap by more than the other run may have `left`: it did
+/// not have the contact, or had it by springs, or its obstacle stands elsewhere now.
+pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], left: &[f64]) -> Option<Problem> {
+    let length = |contact: usize| match model.dimension {
+        1 => model.scale,
+        dimension => longest(&model.contacts[contact].facets[0].1, y, dimension),
+    };
+    let is_deeper = |place: &DeepPlace| place.depth > left[place.contact] * length(place.contact);
+    let found = inside(model, y, 0.0).into_iter().find(is_deeper)?;
     let DeepPlace { contact, node, depth, .. } = found;
     let spec = &case.contacts[contact];
     Some(Problem::new(
@@ -160,8 +181,8 @@ pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], kept_apart: &[bool]
             quantity(depth, &case.units.length)
         ),
         format!(
-            "the run of `initial.from` did not keep them apart there, where node {node} is inside; closing the overlap within one step would drive them apart"
+            "the run of `initial.from` left node {node} inside, or the obstacle was not there; closing the overlap within one step would drive them apart"
         ),
-        "place the obstacle where the bodies touch it, or give that run this contact, with the same `method` and `enforcement`",
+        "give that run this contact with the same `method` and `enforcement`, or place the obstacle where the bodies touch it",
     ))
 }

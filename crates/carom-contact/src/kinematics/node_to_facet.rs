@@ -121,15 +121,16 @@ impl NodeToFacet {
     /// depth.
     #[must_use]
     pub fn with_allowed(self, allowed: Vec<f64>) -> Self {
-        let mut allowed = Self { allowed, ..self };
-        allowed.search_to_depth();
-        allowed
+        let mut contact = Self { allowed, ..self };
+        contact.search_to_depth();
+        contact
     }
 
-    /// Nodes are found up to the depths that they may have.
+    /// Nodes are found up to the depths, or distances, at which their gaps are zero.
     fn search_to_depth(&mut self) {
-        let deepest = (0..self.secondary.len()).map(|place| self.slack(place)).fold(0.0, f64::max);
-        self.tools.get_mut().unwrap_or_else(PoisonError::into_inner).search.allow(deepest);
+        let depth = |place: usize| (self.allowed(place) + self.kept(place)).abs();
+        let most = (0..self.secondary.len()).map(depth).fold(0.0, f64::max);
+        self.tools.get_mut().unwrap_or_else(PoisonError::into_inner).search.look_around(most);
     }
 
     /// Contact of circles around the nodes, whose gaps are smaller by their radii.

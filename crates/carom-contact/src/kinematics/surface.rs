@@ -228,8 +228,8 @@ pub(crate) struct Search {
     apart: Apart,
     /// Distance from the paths of the nodes within which facets are found.
     reach: f64,
-    /// The largest depth that a node may have without contact: it must be near its facet there.
-    deepest: f64,
+    /// Distance from the paths of facets within which nodes are near them, whatever their size.
+    around: f64,
 }
 
 impl Search {
@@ -238,7 +238,7 @@ impl Search {
         let hull = Hull::line(surface.shape.nodes(), 1.0);
         let both = surface.nodes.iter().chain(nodes).copied();
         let apart = Apart::new(both, surface.shape.dimension(), hull.weight());
-        Self { hull, tree: Tree::default(), found: Vec::new(), apart, reach: 0.0, deepest: 0.0 }
+        Self { hull, tree: Tree::default(), found: Vec::new(), apart, reach: 0.0, around: 0.0 }
     }
 
     /// Finds facets up to a distance from the paths of the nodes.
@@ -246,9 +246,10 @@ impl Search {
         self.reach = reach;
     }
 
-    /// Finds the facets behind which the nodes are up to this depth.
-    pub(crate) fn allow(&mut self, deepest: f64) {
-        self.deepest = deepest;
+    /// Finds facets whose paths are within this distance, however small they are. Called before the
+    /// first search.
+    pub(crate) fn look_around(&mut self, distance: f64) {
+        self.around = distance;
     }
 
     /// Whether no node comes near a facet, as far as it is known without [`Self::update`].
@@ -275,7 +276,7 @@ impl Search {
             let nodes = surface.facet(facet).nodes;
             let [old, new] = [before, now].map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
             let bounds = old.union(&new);
-            bounds.grown((margin * bounds.size()).max(self.deepest))
+            bounds.grown((margin * bounds.size()).max(self.around))
         };
         self.tree.place(surface.all(), swept);
         let mut all = Bounds::EMPTY;

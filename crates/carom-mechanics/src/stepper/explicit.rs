@@ -50,6 +50,15 @@ const BLOCK: usize = 1 << 14;
 /// Work of internal forces, relative to the energies, that may be round-off.
 const ROUND_OFF: f64 = 1e-12;
 
+/// Energy that the contact forces at the start of a step return in it, up to what contact has taken
+/// so far: nodes may turn over several steps.
+fn returned(model: &Model, start: &State, dt: f64) -> f64 {
+    let of = [&start.half_step.velocity[..], &start.f_contact];
+    let [returns] = model.threads.sums(of, |[v, force]| [-0.5 * dt * v * force]);
+    let taken = -(start.ledger.contact_work + start.ledger.friction_work);
+    returns.min(taken)
+}
+
 /// The explicit stepper.
 pub struct Explicit {
     /// Mass per dof.
@@ -185,12 +194,9 @@ impl Explicit {
         let lent_at_start = self.lent(model, start, dt, before);
         let lent = self.lent(model, next, dt, now) - lent_at_start;
         if touches && model.contacts.iter().any(|contact| contact.restitution > 0.0) {
-            // What a force returns here it took in the step before, and velocities in its middle
-            // have a part of it already.
-            let of = [&start.half_step.velocity[..], &start.f_contact];
-            let [taken] = model.threads.sums(of, |[v, force]| [dt * v * 0.5 * force]);
+            // Velocities in the middle have a part of what comes back already.
             let in_the_middle = 0.125 * dt * dt * before - lent_at_start;
-            next.ledger.unbooked += f64::max(0.0, -taken - in_the_middle);
+            next.ledger.unbooked += f64::max(0.0, returned(model, start, dt) - in_the_middle);
         }
         let State { impulses, contact_forces, .. } = next;
         for ((before, now), impulse) in start.contact_forces.iter().zip(contact_forces).zip(impulses) {
@@ -252,9 +258,9 @@ impl Explicit {
         // A shorter step lends less, and what is not lent any more is created.
         state.ledger.unbooked += self.lent(model, state, dt, inertia(&state.a)) - lent;
         report.begun = state.ledger.kinetic - kinetic;
-        let work = |force: &[f64]| 0.5 * dt * before.iter().zip(force).map(|(v, f)| v * f).sum::<f64>();
-        let friction = work(&state.f_friction);
-        state.ledger.contact_work -= work(&state.f_contact) - friction;
+        let of_half = |force: &[f64]| 0.5 * dt * before.iter().zip(force).map(|(v, f)| v * f).sum::<f64>();
+        let friction = of_half(&state.f_friction);
+        state.ledger.contact_work -= of_half(&state.f_contact) - friction;
         state.ledger.friction_work -= friction;
         for (impulse, force) in state.impulses.iter_mut().zip(&state.contact_forces) {
             for i in 0..3 {

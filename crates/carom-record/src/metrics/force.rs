@@ -37,7 +37,7 @@ pub fn high_frequency(samples: &[f64]) -> Option<f64> {
 }
 
 pub(super) fn high(given: &Given) -> Option<f64> {
-    high_frequency(given.force().get(given.rows_in_contact()?)?)
+    high_frequency(given.force_of_first()?.get(given.rows_in_contact()?)?)
 }
 
 pub(super) fn chatter(given: &Given) -> Option<f64> {

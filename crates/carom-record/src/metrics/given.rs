@@ -84,9 +84,22 @@ impl<'a> Given<'a> {
         self.run.map_or(&[], |run| &run.manifest.facts.contacts)
     }
 
-    /// Magnitude of the contact force in every row.
+    /// Magnitude of the contact force in every row, of contacts that do not count as one the
+    /// largest.
     pub(super) fn force(&self) -> Vec<f64> {
         force(self.history, self.contacts())
+    }
+
+    /// Magnitude of the contact force in every row; of contacts that do not count as one, that of
+    /// the contact with the largest force in the first episode.
+    pub(super) fn force_of_first(&self) -> Option<Vec<f64>> {
+        if count_as_one(self.contacts()) {
+            return Some(total_force(self.history));
+        }
+        let rows = self.rows_in_contact()?;
+        let peak = |force: &[f64]| force[rows.clone()].iter().copied().fold(0.0, f64::max);
+        let larger = |one: Vec<f64>, other: Vec<f64>| if peak(&other) > peak(&one) { other } else { one };
+        of_contacts(self.history, self.contacts()).reduce(larger)
     }
 
     /// The impulse of all contacts, if they count as one.
@@ -129,21 +142,26 @@ pub(crate) fn count_as_one(contacts: &[ContactFacts]) -> bool {
     contacts.len() < 2 || bodies.len() == 1 && contacts.iter().all(|of| of.primary.is_none())
 }
 
-/// Magnitude of the contact force in every row; of contacts that do not count as one, that of the
-/// contact with the largest one.
+/// Magnitudes of the forces of contacts that have columns of their own.
+fn of_contacts<'a>(
+    history: &'a History,
+    contacts: &'a [ContactFacts],
+) -> impl Iterator<Item = Vec<f64>> + 'a {
+    let forces = contacts.iter().map(|of| norms(&vector(history, &format!("{}.force", of.name))));
+    forces.filter(|force| !force.is_empty())
+}
+
+/// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
 fn force(history: &History, contacts: &[ContactFacts]) -> Vec<f64> {
     if count_as_one(contacts) {
         return total_force(history);
     }
-    let of_contacts = contacts.iter().map(|of| norms(&vector(history, &format!("{}.force", of.name))));
-    let peak = |force: &[f64]| force.iter().copied().fold(0.0, f64::max);
-    let larger = |one: Vec<f64>, other: Vec<f64>| if peak(&other) > peak(&one) { other } else { one };
-    let largest = of_contacts.filter(|force| !force.is_empty()).reduce(larger);
+    let larger = |one: Vec<f64>, other: Vec<f64>| one.iter().zip(&other).map(|(a, b)| a.max(*b)).collect();
+    let largest = of_contacts(history, contacts).reduce(larger);
     largest.unwrap_or_else(|| total_force(history))
 }
 
-/// Magnitude of the contact force in every row; of contacts that do not count as one, that of the
-/// contact with the largest one.
+/// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
 pub fn contact_force(run: &Run) -> Vec<f64> {
     force(&run.history, &run.manifest.facts.contacts)
 }

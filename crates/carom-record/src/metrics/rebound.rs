@@ -50,10 +50,9 @@ impl<'a> Impact<'a> {
     /// The first impact of a run.
     ///
     /// # Errors
-    /// The reason why there is none: no contact, a support that moves a body and changes its
-    /// velocity meanwhile, a striker that did not approach before it, or strikes nothing but itself
-    /// or several parties of different velocities, one that is tied to another body, with which it
-    /// moves, or the unknown velocity of a support.
+    /// The reason why there is none: no contact, a striker that did not approach before it, or
+    /// strikes nothing but itself or several parties of different velocities, one that is tied to
+    /// another body, with which it moves, or the unknown velocity of a support.
     pub fn first(run: &'a Run) -> Result<Self, &'static str> {
         if run.manifest.facts.is_static {
             return Err("load steps have no velocities");
@@ -77,13 +76,6 @@ impl<'a> Impact<'a> {
         let fastest = parties.filter_map(|party| impact.velocity(run, party, before)).flatten();
         let fastest = fastest.fold(0.0_f64, |most, v| most.max(v.abs()));
         let still = AT_REST * fastest;
-        let turns = |end: usize| {
-            let mut bodies = impact.others.iter().copied().flatten().chain([striker]);
-            bodies.any(|body| is_turned(run, body, [before, end]))
-        };
-        if episode.end.is_some_and(turns) {
-            return Err("a support that moves a body changes its velocity meanwhile");
-        }
         let separation = episode.end.and_then(|end| impact.relative(run, end));
         impact.separation = separation.map(|w| if w.abs() <= still { 0.0 } else { w });
         let is_approach = impact.approach > still;
@@ -139,6 +131,23 @@ impl<'a> Impact<'a> {
         Some(held.zip(turning).map(|(v, turning)| v + turning).collect())
     }
 
+    /// Whether supports move a party along the normal with another velocity at the end of the first
+    /// episode than before it: the separation is then their work.
+    fn is_driven(&self, run: &Run) -> bool {
+        let Some(Episode { start, end: Some(end) }) = first_episode(&run.history) else { return false };
+        let changes = |body: &str| {
+            let rows = [start.saturating_sub(1), end];
+            let [Some(before), Some(after)] = rows.map(|row| prescribed(run, body, run.times()[row])) else {
+                return false;
+            };
+            let rates = before.into_iter().zip(after).map(|(before, after)| before.zip(after));
+            let differences = rates.map(|rates| rates.map_or(0.0, |(before, after)| after - before));
+            let along: f64 = differences.zip(self.normal).map(|(change, n)| change * n).sum();
+            along.abs() > AT_REST * self.approach
+        };
+        self.others.iter().copied().flatten().chain([self.striker]).any(changes)
+    }
+
     /// w·n in a row; none if parties of different velocities are struck.
     fn relative(&self, run: &Run, row: usize) -> Option<f64> {
         let of_striker = self.velocity(run, Some(self.striker), row)?;
@@ -172,13 +181,14 @@ pub(super) fn turning_time(given: &Given) -> Option<f64> {
 
 /// Newton's coefficient of restitution.
 pub(super) fn restitution(run: &Run) -> Option<f64> {
-    let impact = Impact::first(run).ok()?;
+    let impact = Impact::first(run).ok().filter(|impact| !impact.is_driven(run))?;
     impact.separation.filter(|separation| *separation >= 0.0).map(|separation| separation / impact.approach)
 }
 
 /// Why a run has no coefficient of restitution.
 pub fn no_rebound(run: &Run) -> Option<&'static str> {
     match Impact::first(run) {
+        Ok(impact) if impact.is_driven(run) => Some("a support changes the velocity of a body meanwhile"),
         Ok(Impact { separation: Some(separation), .. }) if separation >= 0.0 => None,
         Ok(Impact { separation: Some(_), .. }) => {
             Some("the bodies approach each other when the first contact ends")
@@ -228,14 +238,6 @@ fn prescribed(run: &Run, body: &str, time: f64) -> Option<[Option<f64>; 3]> {
         }
     }
     Some(rates)
-}
-
-/// Whether supports move a body with another velocity in the second row than in the first one.
-fn is_turned(run: &Run, body: &str, rows: [usize; 2]) -> bool {
-    let [before, after] = rows.map(|row| prescribed(run, body, run.times()[row]));
-    let [Some(before), Some(after)] = [before, after] else { return false };
-    let differ = |(a, b): (f64, f64)| (a - b).abs() > AT_REST * (a.abs() + b.abs());
-    before.into_iter().zip(after).filter_map(|(a, b)| a.zip(b)).any(differ)
 }
 
 /// Rate of a displacement; none if it depends on the place, or is a function of a program.

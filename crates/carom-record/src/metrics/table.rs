@@ -84,7 +84,7 @@ pub const HISTORY: [Definition; 28] = [
         "TV(|F|)/(2 max |F| − |F|_{a−1} − |F|_b) − 1, TV = Σ |x_{n+1} − x_n|",
         VARIATION,
         "total variation of the contact force in the first episode, divided by that of one rise and fall, minus 1",
-        |f| roughness(f.force().get(f.rows()?)?),
+        |f| roughness(f.force_of_first()?.get(f.rows()?)?),
     ),
     d(
         "force_high_frequency",

@@ -12,6 +12,8 @@
 //!
 //! After a declared contact, nothing is known before the run.
 
+use std::collections::BTreeSet;
+
 use carom_case::{Case, ContactSpec, ObstacleMotion, PrimarySpec};
 use carom_mechanics::model::{BodyInstance, Model};
 use carom_mechanics::{DeepPlace, Overlap, Penetration, Undeclared};
@@ -80,6 +82,8 @@ struct Scene<'a> {
     extents: Vec<Vec<[f64; 2]>>,
     undeclared: Undeclared,
     contacts: Penetration,
+    /// Contacts whose bodies overlap at the start.
+    overlapping: BTreeSet<usize>,
 }
 
 impl<'a> Scene<'a> {
@@ -99,8 +103,10 @@ impl<'a> Scene<'a> {
         let courses = model.parts.iter().enumerate().map(course).collect();
         let extents = model.parts.iter().map(|part| extents(model, part, &directions)).collect();
         let undeclared = Undeclared::new(model);
-        let contacts = Penetration::of_contacts(model);
-        Self { case, model, directions, courses, extents, undeclared, contacts }
+        let mut contacts = Penetration::of_contacts(model);
+        let inside = contacts.inside(model, &model.initial_position, INSIDE * model.scale);
+        let overlapping = inside.iter().map(|place| place.contact).collect();
+        Self { case, model, directions, courses, extents, undeclared, contacts, overlapping }
     }
 
     /// The contacts between two bodies.
@@ -165,7 +171,8 @@ impl<'a> Scene<'a> {
         let kinematics = &self.model.contacts[place.contact].kinematics;
         let index = kinematics.secondary().iter().position(|&node| node == place.node);
         let distance = index.and_then(|index| kinematics.signed_distance(index, y));
-        distance.is_some_and(|distance| distance < -INSIDE * self.model.scale)
+        let is_outside = !self.overlapping.contains(&place.contact);
+        is_outside && distance.is_some_and(|distance| distance < -INSIDE * self.model.scale)
     }
 
     /// When the extents of two bodies that move relative to each other begin and cease to overlap,

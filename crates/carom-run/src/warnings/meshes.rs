@@ -187,7 +187,7 @@ pub(super) fn unmatched_pressure(case: &Case, model: &Model) -> Vec<Found> {
         }
         let last = places.pop()?;
         let listed = if places.is_empty() { last } else { format!("{} and {last}", places.join(", ")) };
-        let what = format!("the nodes of its sides do not match, on which {listed} depend");
+        let what = format!("the nodes of its sides do not match, which affects {listed}");
         Some(Found::of_contact(&contact.name, what))
     };
     case.contacts.iter().enumerate().filter_map(unmatched).collect()

@@ -56,7 +56,7 @@ pub(super) fn short_run(case: &Case, model: &Model) -> Vec<Found> {
             let time = &units.time;
             let length = &units.length;
             let what = format!(
-                "the run ends at {end} {time}, and a pressure wave needs {crossing} {time} for {across} {length}, twice its volume over its surface"
+                "the run ends at {end} {time}, and a pressure wave needs {crossing} {time} to cross {across} {length}, twice the body's volume over its surface"
             );
             found.push(Found::of_body(&part.name, what));
         }

@@ -218,3 +218,34 @@ time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
     // At the nodes, and where nodes on either side hold the edge.
     assert!(!given(0.25).contains(&id), "{:?}", given(0.25));
 }
+
+/// Where the primary is the far side of its body, nodes of the contact enter elsewhere; where
+/// bodies overlap from the start they do not.
+#[test]
+fn a_contact_with_the_far_side_of_a_body() {
+    let blocks = |height: f64, side: &str, more: &str| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }}]
+body = [
+    {{ name = "above", material = "m", element = "T6", mesh = {{ shape = "rectangle", min = [0.0, {height}], max = [1.0, 1.5], cells = [2, 2] }}, velocity = [0.0, -1.0] }},
+    {{ name = "below", material = "m", element = "T6", mesh = {{ shape = "rectangle", min = [-0.5, -0.5], max = [1.5, 0.0], cells = [4, 2] }} }},
+]
+[[contact]]
+name = "c"
+secondary = "above.bottom"
+primary = "below.{side}"
+{more}
+[time]
+end = 1.0
+step = 0.01
+scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
+"#
+        )
+    };
+    let warns = |text: &str| found(text, &[]).iter().any(|(id, _)| id == "undeclared-contact");
+    assert!(warns(&blocks(0.1, "bottom", "")));
+    assert!(!warns(&blocks(0.1, "top", "")));
+    assert!(!warns(&blocks(-0.01, "top", "overlap = \"relax\"")));
+}

@@ -171,7 +171,7 @@ fn pressures_on_meshes_that_do_not_match() {
     }
     let asked = ["probe=[]", "expect=[{ what = \"pressure_max\", at_most = 1.0 }]"];
     let (_, what) = found(IMPACT, &asked).into_iter().find(|(id, _)| *id == unmatched).unwrap();
-    assert!(what.ends_with("on which the expected pressure_max depend"), "{what}");
+    assert!(what.ends_with("which affects the expected pressure_max"), "{what}");
     let blocks = |other: usize| {
         format!(
             r#"

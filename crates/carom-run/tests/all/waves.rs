@@ -150,7 +150,7 @@ fn an_obstacle_that_starts_at_once() {
 #[test]
 fn a_run_that_ends_before_a_wave_has_crossed() {
     let short = |sets: &[&str]| warned(PUSHED, "short-run", sets);
-    let stated = "body \"bar\": the run ends at 1.50 s, and a pressure wave needs 2.00 s for 2.00 m, twice its volume over its surface";
+    let stated = "body \"bar\": the run ends at 1.50 s, and a pressure wave needs 2.00 s to cross 2.00 m, twice the body's volume over its surface";
     assert_eq!(short(&[]), [stated]);
     assert!(short(&["time.end=2.02"]).is_empty());
     assert!(short(&["time.scheme={ kind = \"static\" }", "time.step=0.5"]).is_empty());

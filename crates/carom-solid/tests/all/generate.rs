@@ -244,3 +244,10 @@ fn areas() {
         assert!((hexagon - 6.0 * 3.0_f64.sqrt()).abs() < 1e-13, "{element:?}: {hexagon}");
     }
 }
+
+/// A half is rounded up in every unit: 0.3/0.2 is 1.4999999999999998.
+#[test]
+fn the_mesh_of_a_disc_does_not_depend_on_the_unit() {
+    let cells = |unit: f64| disc(Element::T3, 0.3 * unit, [0.0, 0.0], 0.2 * unit).unwrap().cell_count();
+    assert_eq!([cells(1.0), cells(10.0), cells(1000.0)], [24; 3]);
+}

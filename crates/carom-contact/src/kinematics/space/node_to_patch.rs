@@ -195,8 +195,8 @@ impl NodeToPatch {
 
     /// Where facets are near nodes, with a margin relative to their size.
     fn around(&self, margin: f64) -> Around {
-        let depth = (0..self.secondary.len()).map(|place| self.slack(place)).fold(0.0, f64::max);
-        Around { margin, depth }
+        let distance = (0..self.secondary.len()).map(|place| self.slack(place).abs()).fold(0.0, f64::max);
+        Around { margin, distance }
     }
 
     pub(super) fn gap(&self, facet: usize, xi: [f64; 2], from: Vector<3>, y: &[f64]) -> f64 {

@@ -2,8 +2,7 @@
 
 use super::crossing::crossing;
 use super::node_to_patch::{NodeToPatch, Tools};
-use super::paths::Around;
-use super::paths::path;
+use super::paths::{Around, path};
 use crate::kinematics::passed::Paths;
 use crate::kinematics::way::Met;
 use crate::kinematics::{Kinematics, Passed, SpaceHit};
@@ -29,7 +28,7 @@ impl NodeToPatch {
             bounce,
         };
         let motion = among.motion(ends)?;
-        paths.update(&self.primary, &self.hull, Around { margin: 0.0, depth: 0.0 }, ends);
+        paths.update(&self.primary, &self.hull, Around { margin: 0.0, distance: 0.0 }, ends);
         among.deepest(
             motion,
             ends,

@@ -27,8 +27,8 @@ pub(super) struct Paths {
 pub(super) struct Around {
     /// Relative to the size of the facet's path.
     pub(super) margin: f64,
-    /// The largest depth that a node may have without contact.
-    pub(super) depth: f64,
+    /// The largest depth, or distance, at which the gap of a node is zero.
+    pub(super) distance: f64,
 }
 
 /// Positions and boxes of all facets at the start of a step, which several searches share.
@@ -59,12 +59,12 @@ impl Start {
 
 impl Paths {
     /// Updates the boxes to the motion of a step; those of the hierarchy are grown by `margin` of
-    /// their sizes, and at least by `depth`.
+    /// their sizes, and at least by `distance`.
     pub(super) fn update(
         &mut self,
         primary: &Boundary,
         hull: &Hull,
-        Around { margin, depth }: Around,
+        Around { margin, distance }: Around,
         [before, now]: [&[f64]; 2],
     ) {
         self.start.update(primary, hull, before);
@@ -72,7 +72,8 @@ impl Paths {
         self.tight.clear();
         self.tight.extend(boxes.map(|(facet, old)| old.union(&primary.bounds(hull, facet, now))));
         let tight = &self.tight;
-        self.tree.place(tight.len(), |facet| tight[facet].grown((margin * tight[facet].size()).max(depth)));
+        self.tree
+            .place(tight.len(), |facet| tight[facet].grown((margin * tight[facet].size()).max(distance)));
     }
 
     /// The middle of a facet at the start of the step.
