@@ -167,7 +167,10 @@ fn have_the_same_bodies(one: &ContactSpec, other: &ContactSpec) -> bool {
 pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], left: &[f64]) -> Option<Problem> {
     let length = |contact: usize| match model.dimension {
         1 => model.scale,
-        dimension => longest(&model.contacts[contact].facets[0].1, y, dimension),
+        dimension => {
+            let of_sides = model.contacts[contact].facets.iter();
+            of_sides.map(|(_, facets)| longest(facets, y, dimension)).fold(0.0, f64::max)
+        }
     };
     let is_deeper = |place: &DeepPlace| place.depth > left[place.contact] * length(place.contact);
     let found = inside(model, y, 0.0).into_iter().find(is_deeper)?;

@@ -25,6 +25,8 @@ const VARIABLES: [&str; 4] = ["X", "Y", "Z", "t"];
 
 /// Velocity of approach, over the largest velocity of a party, that is round-off.
 const AT_REST: f64 = 1e-9;
+/// Change of the velocity of a support along the normal, over that of approach, that drives a body.
+const DRIVEN: f64 = 1e-3;
 
 /// A body, or an obstacle that moves; none: an obstacle that is fixed.
 pub(super) type Party<'a> = Option<&'a str>;
@@ -143,7 +145,7 @@ impl<'a> Impact<'a> {
             let rates = before.into_iter().zip(after).map(|(before, after)| before.zip(after));
             let differences = rates.map(|rates| rates.map_or(0.0, |(before, after)| after - before));
             let along: f64 = differences.zip(self.normal).map(|(change, n)| change * n).sum();
-            along.abs() > AT_REST * self.approach
+            along.abs() > DRIVEN * self.approach
         };
         self.others.iter().copied().flatten().chain([self.striker]).any(changes)
     }
