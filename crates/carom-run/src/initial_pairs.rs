@@ -29,7 +29,7 @@ const LEFT: f64 = 0.03;
 pub(crate) struct Found {
     pub(crate) pairs: Vec<Vec<Pair>>,
     pub(crate) slid: BTreeMap<(usize, usize), FrictionState>,
-    /// Of each contact, the depth relative to the longest facet that the other run may have left.
+    /// Depth that the other run may have left in each contact, relative to its longest facet.
     pub(crate) left: Vec<f64>,
 }
 
@@ -150,8 +150,8 @@ fn touching(model: &Model, contact: &Contact, y: &[f64]) -> Vec<Pair> {
     pairing.pairs
 }
 
-/// What a contact of the same bodies may have left, of another kind than this one. Springs press at
-/// any depth.
+/// Depth, relative to the longest facet, that a contact of another kind between the same bodies may
+/// have left. Springs press at any depth.
 fn left_by_another(spec: &ContactSpec) -> f64 {
     if spec.enforcement.is_exact() { LEFT } else { f64::INFINITY }
 }

@@ -69,7 +69,7 @@ impl Probe {
                 Quantity::Displacement(i) => nodal(y, *i) - nodal(reference, *i),
                 Quantity::Velocity(i) => nodal(v, *i),
                 Quantity::Acceleration(i) => nodal(a, *i),
-                // Of the mean stress: means of its values in cells would not be that of any stress.
+                // The mean of the values in cells would be the von Mises stress of no stress.
                 Quantity::VonMises => {
                     let mean = |i, j| self.mean(&*part.body, part.of(y), &past, Quantity::Stress(i, j));
                     let mut stress = [[0.0; 3]; 3];

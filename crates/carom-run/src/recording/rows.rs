@@ -107,7 +107,8 @@ fn contact_rows<'a>(
     rows
 }
 
-/// Of each contact with friction in space: friction on the secondary side of its pairs.
+/// Forces of friction on the secondary side, in space: for each contact one for each pair, none of
+/// contacts without friction.
 fn rubbing(model: &Model, state: &State) -> Vec<Vec<[f64; 3]>> {
     let in_space = model.dimension == 3;
     let count = |(contact, pairs): (&Contact, &Vec<Pair>)| {
@@ -129,7 +130,7 @@ struct Described<'a, 's> {
     model: &'a Model,
     state: &'s State,
     pressures: Pressures,
-    /// Of each contact, a row for each pair.
+    /// Rows of the gaps: for each contact one for each pair.
     measured: &'s [contact::Rows],
     rubbing: Vec<Vec<[f64; 3]>>,
     has_field: bool,
