@@ -116,10 +116,6 @@ impl<const D: usize> Material<D> for Law {
     const MEMORY: usize = MOST;
     type Point = Point;
 
-    fn at(&self, h: &Mat<D>) -> Result<Point, NotPositive> {
-        self.after(h, &Past::new(&[0.0; MOST], 0.0))
-    }
-
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point, NotPositive> {
         let det_f = 1.0 + excess_det(h);
         if det_f.is_nan() || det_f <= 0.0 {

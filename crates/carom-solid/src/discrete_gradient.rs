@@ -22,10 +22,11 @@
 //!
 //! Where flow begins within a step, the incremental potential W = W* − ψ of a law that yields has
 //! no second derivative. The smooth part W*, without flow in the step, is integrated so; what flow
-//! releases, ψ, is known in closed form:
+//! releases, ψ, is known in closed form, and so is its stress S_ψ = ∂ψ/∂E = S* − S. At E₀ nothing
+//! has flowed in the step, ψ₀ = 0:
 //!
 //! ```text
-//! W₁ − W₀ − S(E_m):ΔE = 5/18 [S*(E₊) + S*(E₋) − 2 S*(E_m)]:ΔE − (ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE
+//! W₁ − W₀ − S(E_m):ΔE = 5/18 [S*(E₊) + S*(E₋) − 2 S*(E_m)]:ΔE − ψ₁ + S_ψ(E_m):ΔE
 //! ```
 //!
 //! In plane stress, where the thickness without flow is another one, the work of a step with flow
@@ -36,7 +37,7 @@
 
 use carom_algebra::{Four, Mat, Real, wide};
 
-use crate::material::{AtFour, NotPositive, excess_det};
+use crate::material::{Along, AtFour, NotPositive, excess_det};
 use crate::points::{Mats, four, lanes};
 use crate::potential::Potential;
 
@@ -68,9 +69,10 @@ pub(crate) fn between<const D: usize>(
                 let middle = law.at(&((h[0] + h[1]) * Four::of(0.5)), &mut [])?;
                 return Ok(AtFour { stress: middle.stress, ..end });
             }
-            let path = Path::new(law, &h)?;
+            let path = Path::new(&h)?;
+            let middle = AtStrain::new(law, &path.middle, None)?;
             let end = law.at(&root(&path.ends[1])?, memory)?;
-            let s = path.middle.stress + path.change * path.phi(&end)?;
+            let s = middle.stress + path.change * path.phi(law, &middle, &end)?;
             Ok(AtFour { stress: path.f * s, ..end })
         },
     )
@@ -90,65 +92,82 @@ pub(crate) fn change_between<const D: usize>(
             let h = h.map(four);
             let dh = four(dh);
             if !law.law.traits().objective {
-                return Ok(lanes(&law.change(&((h[0] + h[1]) * half), &(dh * half))?));
+                let middle = (h[0] + h[1]) * half;
+                return Ok(lanes(&law.along(&middle, Some(&(dh * half)))?.change));
             }
-            let path = Path::new(law, &h)?;
+            let path = Path::new(&h)?;
             let de = symmetric(&((Mat::identity() + h[1]).transposed() * dh));
-            let [phi, dphi] = path.phi_and_change(&de)?;
-            let s = path.middle.stress + path.change * phi;
-            let ds = path.middle.change(law, &(de * half))? + path.change * dphi + de * phi;
+            let middle = AtStrain::new(law, &path.middle, Some(&(de * half)))?;
+            let [phi, dphi] = path.phi_and_change(law, &middle, &de)?;
+            let s = middle.stress + path.change * phi;
+            let ds = middle.change + path.change * dphi + de * phi;
             Ok(lanes(&(dh * s * half + path.f * ds)))
         },
     )
 }
 
-/// A law at a strain.
+/// A law at a strain, and its change with dE, zero without one.
 struct AtStrain<const D: usize> {
-    /// F̂ − I.
-    h: Mat<D, Four>,
-    /// F̂⁻¹.
-    inverse: Mat<D, Four>,
     /// W.
     energy: Four,
     /// S.
     stress: Mat<D, Four>,
+    /// dS.
+    change: Mat<D, Four>,
     /// ψ.
     released: Four,
+    /// S_ψ.
+    released_stress: Mat<D, Four>,
+    /// dS_ψ.
+    released_change: Mat<D, Four>,
 }
 
 impl<const D: usize> AtStrain<D> {
     #[inline(always)]
-    fn new(law: &Potential<D>, strain: &Mat<D, Four>) -> Result<Self, NotPositive> {
+    fn new(
+        law: &Potential<D>,
+        strain: &Mat<D, Four>,
+        de: Option<&Mat<D, Four>>,
+    ) -> Result<Self, NotPositive> {
         let h = root(strain)?;
-        let AtFour { stored, stress, dissipated, released } = law.at(&h, &mut [])?;
         let inverse = (Mat::identity() + h).inverse();
-        let stress = symmetric(&(inverse * stress));
-        Ok(Self { h, inverse, energy: stored + dissipated, stress, released })
+        let df = de.map(|de| inverse.transposed() * *de);
+        let Along { at, change, released_stress, released_change } = law.along(&h, df.as_ref())?;
+        let stress = symmetric(&(inverse * at.stress));
+        let released_stress = symmetric(&(inverse * released_stress));
+        let turned = |change: Mat<D, Four>, stress: &Mat<D, Four>| match &df {
+            Some(df) => inverse * (change - *df * *stress),
+            None => Mat::ZERO,
+        };
+        Ok(Self {
+            energy: at.stored + at.dissipated,
+            stress,
+            change: turned(change, &stress),
+            released: at.released,
+            released_stress,
+            released_change: turned(released_change, &released_stress),
+        })
     }
 
-    /// Whether there is flow at a point.
+    /// S*.
     #[inline(always)]
-    fn flows(&self) -> bool {
-        self.released.find(|released| released != 0.0).is_some()
+    fn smooth(&self) -> Mat<D, Four> {
+        self.stress + self.released_stress
     }
 
-    /// ∂S/∂E : dE, of the law of this point.
+    /// dS*.
     #[inline(always)]
-    fn change(&self, law: &Potential<D>, de: &Mat<D, Four>) -> Result<Mat<D, Four>, NotPositive> {
-        let df = self.inverse.transposed() * *de;
-        Ok(self.inverse * (law.change(&self.h, &df)? - df * self.stress))
+    fn smooth_change(&self) -> Mat<D, Four> {
+        self.change + self.released_change
     }
 }
 
 /// The straight path between two strains.
-struct Path<'a, const D: usize> {
-    law: &'a Potential<'a, D>,
+struct Path<const D: usize> {
     /// E₀ and E₁.
     ends: [Mat<D, Four>; 2],
-    /// The law at E_m.
-    middle: AtStrain<D>,
-    /// The smooth part at E_m, where it differs at a point.
-    unevolved: Option<AtStrain<D>>,
+    /// E_m.
+    middle: Mat<D, Four>,
     /// F_m.
     f: Mat<D, Four>,
     /// ΔE.
@@ -158,9 +177,9 @@ struct Path<'a, const D: usize> {
     square: Four,
 }
 
-impl<'a, const D: usize> Path<'a, D> {
+impl<const D: usize> Path<D> {
     #[inline(always)]
-    fn new(law: &'a Potential<D>, h: &[Mat<D, Four>; 2]) -> Result<Self, NotPositive> {
+    fn new(h: &[Mat<D, Four>; 2]) -> Result<Self, NotPositive> {
         for h in h {
             // Strains do not tell a reflection.
             let det_f = Four::of(1.0) + excess_det(h);
@@ -170,45 +189,26 @@ impl<'a, const D: usize> Path<'a, D> {
         }
         let half = Four::of(0.5);
         let ends = [strain(&h[0]), strain(&h[1])];
-        let middle_strain = (ends[0] + ends[1]) * half;
+        let middle = (ends[0] + ends[1]) * half;
         let f = Mat::identity() + (h[0] + h[1]) * half;
         let change = symmetric(&(f.transposed() * (h[1] - h[0])));
         let square = change.double_dot(&change).zip(
-            middle_strain.double_dot(&middle_strain),
+            middle.double_dot(&middle),
             #[inline(always)]
             |square, middle| if square > f64::EPSILON * middle { square } else { 0.0 },
         );
-        let middle = AtStrain::new(law, &middle_strain)?;
-        let unevolved = if law.law.traits().splits && middle.flows() {
-            Some(AtStrain::new(&law.smooth(), &middle_strain)?)
-        } else {
-            None
-        };
-        Ok(Self { law, ends, middle, unevolved, f, change, square })
+        Ok(Self { ends, middle, f, change, square })
     }
 
-    /// The smooth part at E_m.
+    /// The law at E₊ and E₋, and its change with dE₁ = dE.
     #[inline(always)]
-    fn smooth(&self) -> &AtStrain<D> {
-        self.unevolved.as_ref().unwrap_or(&self.middle)
-    }
-
-    /// The smooth part at E₊ and E₋.
-    #[inline(always)]
-    fn outer(&self) -> Result<[AtStrain<D>; 2], NotPositive> {
-        let law = self.law.smooth();
-        let middle = (self.ends[0] + self.ends[1]) * Four::of(0.5);
+    fn outer(&self, law: &Potential<D>, de: Option<&Mat<D, Four>>) -> Result<[AtStrain<D>; 2], NotPositive> {
         let offset = self.change * Four::of(OUTER);
-        Ok([AtStrain::new(&law, &(middle + offset))?, AtStrain::new(&law, &(middle - offset))?])
-    }
-
-    /// S*(E₊) + S*(E₋) − 2 S*(E_m), times the weight.
-    #[inline(always)]
-    fn curvature(&self, outer: &[AtStrain<D>; 2]) -> Mat<D, Four> {
-        let smooth = self.smooth().stress;
-        let above = outer[0].stress - smooth;
-        let below = outer[1].stress - smooth;
-        (above + below) * Four::of(WEIGHT)
+        let by_end = |share: f64| de.map(|de| *de * Four::of(share));
+        Ok([
+            AtStrain::new(law, &(self.middle + offset), by_end(0.5 + OUTER).as_ref())?,
+            AtStrain::new(law, &(self.middle - offset), by_end(0.5 - OUTER).as_ref())?,
+        ])
     }
 
     /// Whether there are points without a correction alone.
@@ -218,12 +218,12 @@ impl<'a, const D: usize> Path<'a, D> {
     }
 
     /// The way in which the work is computed at a point: by the difference of the energies in long
-    /// steps, and where flow begins of which ψ is not known; by Gauss points elsewhere.
+    /// steps, and where flow begins of which S_ψ is not known; by Gauss points elsewhere.
     #[inline(always)]
-    fn ways(&self, end_released: Four) -> Ways {
-        let traits = self.law.law.traits();
+    fn ways(&self, law: &Potential<D>, released: Four) -> Ways {
+        let traits = law.law.traits();
         let is_unknown = if traits.yields && !traits.splits {
-            (self.middle.released + end_released).map(|released| f64::from(released > 0.0))
+            released.map(|released| f64::from(released > 0.0))
         } else {
             Four::ZERO
         };
@@ -239,38 +239,18 @@ impl<'a, const D: usize> Path<'a, D> {
         }
     }
 
-    /// −(ψ₁ − ψ₀) − [S(E_m) − S*(E_m)]:ΔE.
+    /// W₁ − W₀ − S(E_m):ΔE as the difference of the energies, where it is W₁ at the end.
     #[inline(always)]
-    fn released(&self, end_released: Four) -> Result<Four, NotPositive> {
-        if !self.law.law.traits().splits {
-            return Ok(Four::ZERO);
-        }
-        let start = self.law.at(&root(&self.ends[0])?, &mut [])?.released;
-        let flown = self.middle.stress - self.smooth().stress;
-        Ok(start - end_released - flown.double_dot(&self.change))
+    fn difference(&self, law: &Potential<D>, middle: &AtStrain<D>, end: Four) -> Result<Four, NotPositive> {
+        let start = law.at(&root(&self.ends[0])?, &mut [])?;
+        Ok(end - (start.stored + start.dissipated) - middle.stress.double_dot(&self.change))
     }
 
-    /// The derivative of [`Self::released`] along dE.
+    /// W₁ − W₀ − S(E_m):ΔE by Gauss points, with ψ₁.
     #[inline(always)]
-    fn released_change(&self, end: &AtStrain<D>, de: &Mat<D, Four>) -> Result<Four, NotPositive> {
-        let flows = end.flows() || self.unevolved.is_some();
-        if !flows || !self.law.law.traits().splits {
-            return Ok(Four::ZERO);
-        }
-        let smooth = self.law.smooth();
-        let half = *de * Four::of(0.5);
-        let end_flown = end.stress - AtStrain::new(&smooth, &self.ends[1])?.stress;
-        let flown = end_flown - (self.middle.stress - self.smooth().stress);
-        let change = self.middle.change(self.law, &half)? - self.smooth().change(&smooth, &half)?;
-        Ok(flown.double_dot(de) - change.double_dot(&self.change))
-    }
-
-    /// W₁ − W₀ − S(E_m):ΔE as the difference of the energies.
-    #[inline(always)]
-    fn difference(&self, end: Four) -> Result<Four, NotPositive> {
-        let start = self.law.at(&root(&self.ends[0])?, &mut [])?;
-        let by_middle = self.middle.stress.double_dot(&self.change);
-        Ok(end - (start.stored + start.dissipated) - by_middle)
+    fn integral(&self, middle: &AtStrain<D>, outer: &[AtStrain<D>; 2], released: Four) -> Four {
+        let work = curvature(&middle.smooth(), &outer.each_ref().map(AtStrain::smooth));
+        (work + middle.released_stress).double_dot(&self.change) - released
     }
 
     /// x/(ΔE:ΔE) where there is a correction, and 0 elsewhere.
@@ -285,61 +265,69 @@ impl<'a, const D: usize> Path<'a, D> {
 
     /// φ.
     #[inline(always)]
-    fn phi(&self, end: &AtFour<D>) -> Result<Four, NotPositive> {
+    fn phi(&self, law: &Potential<D>, middle: &AtStrain<D>, end: &AtFour<D>) -> Result<Four, NotPositive> {
         if self.is_plain() {
             return Ok(Four::ZERO);
         }
-        let ways = self.ways(end.released);
-        let long = if ways.has_long { self.difference(end.stored + end.dissipated)? } else { Four::ZERO };
-        let short = if ways.has_short {
-            self.curvature(&self.outer()?).double_dot(&self.change) + self.released(end.released)?
-        } else {
-            Four::ZERO
-        };
+        let ways = self.ways(law, middle.released + end.released);
+        let mut long = Four::ZERO;
+        if ways.has_long {
+            long = self.difference(law, middle, end.stored + end.dissipated)?;
+        }
+        let mut short = Four::ZERO;
+        if ways.has_short {
+            short = self.integral(middle, &self.outer(law, None)?, end.released);
+        }
         Ok(self.over_square(ways.choose(long, short)))
     }
 
     /// φ and its derivative in the direction of a change dE of E₁.
     #[inline(always)]
-    fn phi_and_change(&self, de: &Mat<D, Four>) -> Result<[Four; 2], NotPositive> {
+    fn phi_and_change(
+        &self,
+        law: &Potential<D>,
+        middle: &AtStrain<D>,
+        de: &Mat<D, Four>,
+    ) -> Result<[Four; 2], NotPositive> {
         if self.is_plain() {
             return Ok([Four::ZERO, Four::ZERO]);
         }
-        let half = *de * Four::of(0.5);
-        let needs_end = self.law.law.traits().yields || self.ways(Four::ZERO).has_long;
-        let end = if needs_end { Some(AtStrain::new(self.law, &self.ends[1])?) } else { None };
-        let ways = self.ways(end.as_ref().map_or(Four::ZERO, |end| end.released));
-        let long = match &end {
-            Some(end) if ways.has_long => {
-                let by_stress = (end.stress - self.middle.stress).double_dot(de);
-                let middle_change = self.middle.change(self.law, &half)?;
-                [self.difference(end.energy)?, by_stress - middle_change.double_dot(&self.change)]
-            }
-            _ => [Four::ZERO, Four::ZERO],
-        };
-        let short = if ways.has_short {
-            let law = self.law.smooth();
-            let outer = self.outer()?;
-            let curvature = self.curvature(&outer);
-            let middle = self.smooth().change(&law, &half)?;
-            let above = outer[0].change(&law, &(*de * Four::of(0.5 + OUTER)))? - middle;
-            let below = outer[1].change(&law, &(*de * Four::of(0.5 - OUTER)))? - middle;
-            let curvature_change = (above + below) * Four::of(WEIGHT);
-            let mut work = curvature.double_dot(&self.change);
-            let mut change = curvature_change.double_dot(&self.change) + curvature.double_dot(de);
-            if let Some(end) = &end {
-                work = work + self.released(end.released)?;
-                change = change + self.released_change(end, de)?;
-            }
-            [work, change]
-        } else {
-            [Four::ZERO, Four::ZERO]
-        };
+        let needs_end = law.law.traits().yields || self.ways(law, Four::ZERO).has_long;
+        let end = if needs_end { Some(AtStrain::new(law, &self.ends[1], None)?) } else { None };
+        let released = end.as_ref().map_or(Four::ZERO, |end| end.released);
+        let ways = self.ways(law, middle.released + released);
+        let mut long = [Four::ZERO, Four::ZERO];
+        if let Some(end) = &end
+            && ways.has_long
+        {
+            let by_stress = (end.stress - middle.stress).double_dot(de);
+            long[0] = self.difference(law, middle, end.energy)?;
+            long[1] = by_stress - middle.change.double_dot(&self.change);
+        }
+        let mut short = [Four::ZERO, Four::ZERO];
+        if ways.has_short {
+            let outer = self.outer(law, Some(de))?;
+            let changes = outer.each_ref().map(AtStrain::smooth_change);
+            let by_work = curvature(&middle.smooth(), &outer.each_ref().map(AtStrain::smooth));
+            let change = curvature(&middle.smooth_change(), &changes) + middle.released_change;
+            let end_stress = end.as_ref().map_or(Mat::ZERO, |end| end.released_stress);
+            short[0] = self.integral(middle, &outer, released);
+            short[1] = change.double_dot(&self.change)
+                + (by_work + middle.released_stress - end_stress).double_dot(de);
+        }
         let phi = self.over_square(ways.choose(long[0], short[0]));
         let excess_change = ways.choose(long[1], short[1]);
         let change = excess_change - Four::of(2.0) * phi * self.change.double_dot(de);
         Ok([phi, self.over_square(change)])
     }
+}
+
+/// x(E₊) + x(E₋) − 2 x(E_m), times the weight.
+#[inline(always)]
+fn curvature<const D: usize>(middle: &Mat<D, Four>, outer: &[Mat<D, Four>; 2]) -> Mat<D, Four> {
+    let above = outer[0] - *middle;
+    let below = outer[1] - *middle;
+    (above + below) * Four::of(WEIGHT)
 }
 
 /// Which points have long steps.

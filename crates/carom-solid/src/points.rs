@@ -149,13 +149,6 @@ pub(crate) fn four<const D: usize>(mats: &Mats<D>) -> Mat<D, Four> {
     mat
 }
 
-/// The number k of each of up to four points with `size` numbers each; zero in the other lanes.
-#[inline(always)]
-pub(crate) fn four_of(numbers: &[f64], size: usize, k: usize) -> Four {
-    let number = |l: usize| numbers.get(l * size + k).copied().unwrap_or(0.0);
-    Four([number(0), number(1), number(2), number(3)])
-}
-
 /// The lanes of a matrix.
 #[inline(always)]
 pub(crate) fn lanes<const D: usize>(mat: &Mat<D, Four>) -> Mats<D> {

@@ -9,8 +9,8 @@
 
 use carom_algebra::{Four, Mat};
 
-use crate::material::{AtFour, NotPositive, Past, Pointwise};
-use crate::points::{four, lanes};
+use crate::material::{Along, AtFour, NotPositive, Past, Pointwise};
+use crate::points::lanes;
 
 /// A law at the first `count` of four points.
 #[derive(Clone, Copy)]
@@ -23,22 +23,15 @@ pub(crate) struct Potential<'a, const D: usize> {
 }
 
 impl<const D: usize> Potential<'_, D> {
-    /// The smooth part: without flow in the step, where that is known.
-    #[inline(always)]
-    pub(crate) fn smooth(&self) -> Self {
-        let frozen = self.law.traits().splits;
-        Self { past: Past { frozen, ..self.past }, ..*self }
-    }
-
     /// The law at H; overwrites the memory, unless it is empty.
     #[inline(always)]
     pub(crate) fn at(&self, h: &Mat<D, Four>, memory: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         self.law.stresses(&lanes(h), &self.past, self.count, memory)
     }
 
-    /// ∂P/∂F : dF at H.
+    /// The law at H, and its change with dF.
     #[inline(always)]
-    pub(crate) fn change(&self, h: &Mat<D, Four>, dh: &Mat<D, Four>) -> Result<Mat<D, Four>, NotPositive> {
-        Ok(four(&self.law.increments(&lanes(h), &lanes(dh), &self.past, self.count)?))
+    pub(crate) fn along(&self, h: &Mat<D, Four>, df: Option<&Mat<D, Four>>) -> Result<Along<D>, NotPositive> {
+        self.law.along(&lanes(h), df.map(lanes).as_ref(), &self.past, self.count)
     }
 }

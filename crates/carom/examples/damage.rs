@@ -14,53 +14,47 @@ struct Damage {
     threshold: f64,
 }
 
-/// κ at the start and at the end of a step.
+/// A point without damage, and κ at the start and at the end of a step.
 struct Damaged<P> {
     of: P,
-    start: f64,
-    end: f64,
+    kappa: [f64; 2],
 }
 
 impl<const D: usize> Material<D> for Damage {
     const MEMORY: usize = 1;
     type Point = Damaged<<NeoHookean as Material<D>>::Point>;
 
-    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
-        self.after(h, &Past::new(&[0.0], 0.0))
-    }
-
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {
         let of = self.of.at(h)?;
         let start = past.memory[0].max(self.threshold);
-        let end = start.max(Material::<D>::energy(&self.of, &of));
-        Ok(Damaged { of, start, end })
+        Ok(Damaged { kappa: [start, start.max(Material::<D>::energy(&self.of, &of))], of })
     }
 
     fn remember(&self, point: &Self::Point, memory: &mut [f64]) {
-        memory[0] = point.end;
+        memory[0] = point.kappa[1];
     }
 
     fn dissipated(&self, point: &Self::Point) -> f64 {
-        self.threshold * (point.end / point.start).ln()
+        self.threshold * (point.kappa[1] / point.kappa[0]).ln()
     }
 
     fn energy(&self, point: &Self::Point) -> f64 {
-        Material::<D>::energy(&self.of, &point.of) * self.threshold / point.end
+        Material::<D>::energy(&self.of, &point.of) * self.threshold / point.kappa[1]
     }
 
     fn stress(&self, point: &Self::Point) -> Mat<D> {
-        self.of.stress(&point.of) * (self.threshold / point.end)
+        self.of.stress(&point.of) * (self.threshold / point.kappa[1])
     }
 
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
         let intact = self.of.tangent(&point.of, a, b);
         let stress: Mat<D> = self.of.stress(&point.of);
-        let grows = if point.end > point.start { 1.0 / point.end } else { 0.0 };
-        (intact - stress.apply(a).outer(&stress.apply(b)) * grows) * (self.threshold / point.end)
+        let grows = if point.kappa[1] > point.kappa[0] { 1.0 / point.kappa[1] } else { 0.0 };
+        (intact - stress.apply(a).outer(&stress.apply(b)) * grows) * (self.threshold / point.kappa[1])
     }
 
     fn lateral(&self, point: &Self::Point) -> f64 {
-        Material::<D>::lateral(&self.of, &point.of) * self.threshold / point.end
+        Material::<D>::lateral(&self.of, &point.of) * self.threshold / point.kappa[1]
     }
 }
 

@@ -38,10 +38,6 @@ impl<const D: usize> Material<D> for Damage {
     const MEMORY: usize = 1;
     type Point = Damaged<<LinearElastic as Material<D>>::Point>;
 
-    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
-        Material::<D>::after(self, h, &Past::new(&[0.0], 0.0))
-    }
-
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {
         let of = self.0.at(h)?;
         let energy = Material::<D>::energy(&self.0, &of);

@@ -4,6 +4,7 @@
 use carom_algebra::{Mat, Vector};
 use carom_run::Setup;
 use carom_run::case::Case;
+use carom_solid::Past;
 use carom_solid::material::{Material, NotPositive, SaintVenantKirchhoff, Thickness};
 use carom_time::{Kernel, Memory, Stage};
 
@@ -34,7 +35,7 @@ impl<const D: usize> Material<D> for Own {
     const ENERGY_DEGREE: usize = <SaintVenantKirchhoff as Material<D>>::ENERGY_DEGREE;
     type Point = <SaintVenantKirchhoff as Material<D>>::Point;
 
-    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Self::Point, NotPositive> {
         self.0.at(h)
     }
 

@@ -179,7 +179,7 @@ impl Hardening {
     pub fn flow<T: Real>(&self, alpha: T, excess: T, stiffness: f64) -> Flow<T> {
         match self {
             Self::Linear { modulus, .. } => {
-                let strain = excess / T::of(stiffness + modulus);
+                let strain = excess * T::of(1.0 / (stiffness + modulus));
                 let modulus = T::of(*modulus);
                 Flow { strain, slope: modulus, hardening: T::of(0.5) * modulus * strain * strain }
             }

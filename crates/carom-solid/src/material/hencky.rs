@@ -5,10 +5,9 @@
 
 use carom_algebra::{Four, Mat, Real};
 
-use super::hyperelastic::{InLanes, Material};
-use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
-use super::{NotPositive, Thickness};
-use crate::points::{four, lanes};
+use super::hyperelastic::{Along, AtFour, Material};
+use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress, store_moduli};
+use super::{Moduli, NotPositive, Past, Thickness};
 
 /// Hencky's law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +67,7 @@ impl<const D: usize> Material<D> for Hencky {
     type Point = Point<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Point<D>, NotPositive> {
         self.kinematics(h)
     }
 
@@ -78,14 +77,36 @@ impl<const D: usize> Material<D> for Hencky {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn four(&self, h: &Mat<D, Four>, _: &Past, _: usize, _: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         let point = self.kinematics(h)?;
-        Ok((point.energy, point.of.stress()))
+        Ok(AtFour::elastic(point.energy, point.of.stress()))
     }
 
     #[inline(always)]
-    fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, _: usize) -> Result<InLanes<D>, NotPositive> {
-        Ok(lanes(&self.kinematics(&four(h))?.of.change(&four(dh))))
+    fn four_along(
+        &self,
+        h: &Mat<D, Four>,
+        df: Option<&Mat<D, Four>>,
+        _: &Past,
+        _: usize,
+    ) -> Result<Along<D>, NotPositive> {
+        let point = self.kinematics(h)?;
+        let at = AtFour::elastic(point.energy, point.of.stress());
+        Ok(Along::elastic(at, df.map_or(Mat::ZERO, |df| point.of.change(df))))
+    }
+
+    #[inline(always)]
+    fn moduli(
+        &self,
+        h: &Mat<D, Four>,
+        _: &Past,
+        _: usize,
+        _: &mut [f64],
+        moduli: &mut Moduli<D>,
+    ) -> Result<AtFour<D>, NotPositive> {
+        let point = self.kinematics(h)?;
+        store_moduli(&point.of, moduli);
+        Ok(AtFour::elastic(point.energy, point.of.stress()))
     }
 
     by_principal_stress!(D);

@@ -4,10 +4,10 @@ use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::kinematics::{NotPositive, excess_det};
 use super::past::Past;
-use crate::points::{LANES, four, get, lanes, set};
+use crate::points::{LANES, Mats, four, get, lanes, set};
 
-/// A matrix at each of four points: `[i][j][point]`.
-pub type InLanes<const D: usize> = [[[f64; LANES]; D]; D];
+/// ∂P/∂F at each of four points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
+pub type Moduli<const D: usize> = [[[[[f64; LANES]; D]; D]; D]; D];
 
 /// A law at each of four points; the last two are zero without a memory.
 pub struct AtFour<const D: usize> {
@@ -29,17 +29,38 @@ impl<const D: usize> AtFour<D> {
     }
 }
 
-/// A hyperelastic law. [`Material::at`] computes common terms once. `at`, `energy`, `stress` and
-/// `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points, for
-/// wide registers.
+/// A law at each of four points, and its change with dF. The last two are those of
+/// [`Material::released`] as a potential, of a law that knows them ([`Material::SPLITS`]).
+pub struct Along<const D: usize> {
+    /// The law.
+    pub at: AtFour<D>,
+    /// ∂P/∂F : dF.
+    pub change: Mat<D, Four>,
+    /// P without flow in the step, less P.
+    pub released_stress: Mat<D, Four>,
+    /// ∂P/∂F : dF without flow in the step, less that with flow.
+    pub released_change: Mat<D, Four>,
+}
+
+impl<const D: usize> Along<D> {
+    /// At points where nothing flows.
+    #[inline(always)]
+    pub fn elastic(at: AtFour<D>, change: Mat<D, Four>) -> Self {
+        Self { at, change, released_stress: Mat::ZERO, released_change: Mat::ZERO }
+    }
+}
+
+/// A hyperelastic law. [`Material::after`] computes common terms once. `after`, `energy`, `stress`
+/// and `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points,
+/// for wide registers. A law whose formulas are written for any number ([`Real`](carom_algebra::Real))
+/// evaluates four points at once: it replaces `four`, `four_along` and `moduli`.
 ///
 /// A law with memory has, for the memory at the start of a step and the length of the step, an
 /// incremental potential ΔW(F) = Ψ + 𝒟 of the stored energy Ψ and the energy 𝒟 that is dissipated
 /// in the step; the stress is ∂ΔW/∂F. What an objective one remembers does not depend on the
 /// rotation in F: discrete gradients evaluate it at the strain. It states [`Material::MEMORY`],
-/// [`Material::after`], [`Material::remember`] and [`Material::dissipated`]; others need none of
-/// these. One that yields adds [`Material::YIELDS`] and [`Material::released`], and
-/// [`Material::SPLITS`] where it can.
+/// [`Material::remember`] and [`Material::dissipated`]; others need none of these. One that yields
+/// adds [`Material::YIELDS`] and [`Material::released`], and [`Material::SPLITS`] where it can.
 pub trait Material<const D: usize>: Send + Sync {
     /// Degree of Ψ as a polynomial in F to be integrated exactly; 0 if it is not a polynomial.
     const ENERGY_DEGREE: usize = 0;
@@ -47,26 +68,27 @@ pub trait Material<const D: usize>: Send + Sync {
     /// Whether Ψ depends on FᵀF alone; otherwise it is quadratic in H.
     const OBJECTIVE: bool = true;
 
-    /// Count of numbers that a quadrature point remembers; all are zero at the start of a run.
+    /// Count of numbers that a quadrature point remembers, at most 64; all are zero at the start of
+    /// a run.
     const MEMORY: usize = 0;
 
     /// Whether ΔW lacks a second derivative where flow begins within a step.
     const YIELDS: bool = false;
 
     /// Whether ΔW of a law that yields is a smooth function less [`Material::released`], and
-    /// [`Past::frozen`] gives that function.
+    /// [`Material::four_along`] gives the stress of that function.
     const SPLITS: bool = false;
 
     /// Kinematics at a point.
     type Point;
 
-    /// Kinematics at H = F − I.
-    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive>;
+    /// Kinematics at H = F − I, and what follows from the memory at the start of a step.
+    fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive>;
 
-    /// Kinematics at H, and what follows from the memory at the start of a step.
+    /// Kinematics at H at the start of a run.
     #[inline(always)]
-    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Self::Point, NotPositive> {
-        self.at(h)
+    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
+        self.after(h, &Past::virgin(Self::MEMORY))
     }
 
     /// Overwrites the memory with that at the end of the step.
@@ -99,21 +121,6 @@ pub trait Material<const D: usize>: Send + Sync {
     /// The block Kᵢⱼ = Σ ∂Pᵢᴶ/∂Fⱼᴸ aᴶ bᴸ, bilinear in the reference gradients a and b.
     fn tangent(&self, point: &Self::Point, a: &Vector<D>, b: &Vector<D>) -> Mat<D>;
 
-    /// Ψ and P at the first `count` of four points; H = 0 in the other lanes, whose results do not
-    /// count. A law whose formulas are written for any number evaluates four points at once.
-    #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, count: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
-        let h = lanes(h);
-        let mut energy = Four::ZERO;
-        let mut stress = [[[0.0; LANES]; D]; D];
-        for l in 0..count {
-            let point = self.at(&get(&h, l))?;
-            energy.0[l] = self.energy(&point);
-            set(&mut stress, l, &self.stress(&point));
-        }
-        Ok((energy, four(&stress)))
-    }
-
     /// ∂P/∂F : dF.
     #[inline(always)]
     fn change(&self, point: &Self::Point, df: &Mat<D>) -> Mat<D> {
@@ -135,32 +142,72 @@ pub trait Material<const D: usize>: Send + Sync {
         dp
     }
 
-    /// ∂P/∂F : dF at the first `count` of four points, in lanes: `h`, `dh` and the result are
-    /// `[i][j][point]`.
+    /// A step at the first `count` of four points; H = 0 in the other lanes, whose results do not
+    /// count. Memories of the points follow each other. Overwrites the memory of the points with
+    /// that at the end of the step, unless that slice is empty.
     #[inline(always)]
-    fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, count: usize) -> Result<InLanes<D>, NotPositive> {
-        let mut changes = [[[0.0; LANES]; D]; D];
-        for l in 0..count {
-            let point = self.at(&get(h, l))?;
-            set(&mut changes, l, &self.change(&point, &get(dh, l)));
-        }
-        Ok(changes)
-    }
-
-    /// A step at the first `count` of four points of a law with memory; H = 0 in the other lanes.
-    /// Overwrites the memory of the points with that at the end of the step, unless that slice is
-    /// empty. A law whose formulas are written for any number evaluates four points at once.
-    #[inline(always)]
-    fn after_four(
+    fn four(
         &self,
         h: &Mat<D, Four>,
         past: &Past,
         count: usize,
         memory: &mut [f64],
     ) -> Result<AtFour<D>, NotPositive> {
+        self.each_of_four(h, past, count, memory, |_, _| ())
+    }
+
+    /// [`Material::four`] with the changes along dF, zero without one.
+    #[inline(always)]
+    fn four_along(
+        &self,
+        h: &Mat<D, Four>,
+        df: Option<&Mat<D, Four>>,
+        past: &Past,
+        count: usize,
+    ) -> Result<Along<D>, NotPositive> {
+        let df = df.map(lanes);
+        let mut changes = [[[0.0; LANES]; D]; D];
+        let at = self.each_of_four(h, past, count, &mut [], |l, point| {
+            if let Some(df) = &df {
+                set(&mut changes, l, &self.change(point, &get(df, l)));
+            }
+        })?;
+        Ok(Along::elastic(at, four(&changes)))
+    }
+
+    /// [`Material::four`] with ∂P/∂F.
+    #[inline(always)]
+    fn moduli(
+        &self,
+        h: &Mat<D, Four>,
+        past: &Past,
+        count: usize,
+        memory: &mut [f64],
+        moduli: &mut Moduli<D>,
+    ) -> Result<AtFour<D>, NotPositive> {
+        let unit = Mat::<D>::identity().0.map(Vector);
+        self.each_of_four(h, past, count, memory, |l, point| {
+            for (row, a) in moduli.iter_mut().zip(&unit) {
+                for (block, b) in row.iter_mut().zip(&unit) {
+                    set(block, l, &self.tangent(point, a, b));
+                }
+            }
+        })
+    }
+
+    /// [`Material::four`], one point after the other; hands each to `also`.
+    #[inline(always)]
+    fn each_of_four(
+        &self,
+        h: &Mat<D, Four>,
+        past: &Past,
+        count: usize,
+        memory: &mut [f64],
+        mut also: impl FnMut(usize, &Self::Point),
+    ) -> Result<AtFour<D>, NotPositive> {
         let h = lanes(h);
         let mut out = AtFour::elastic(Four::ZERO, Mat::ZERO);
-        let mut stress = [[[0.0; LANES]; D]; D];
+        let mut stress: Mats<D> = [[[0.0; LANES]; D]; D];
         let mut memories = memory.chunks_exact_mut(Self::MEMORY.max(1));
         for l in 0..count {
             let point = self.after(&get(&h, l), &past.part(l, Self::MEMORY))?;
@@ -171,25 +218,9 @@ pub trait Material<const D: usize>: Send + Sync {
             if let Some(memory) = memories.next() {
                 self.remember(&point, memory);
             }
+            also(l, &point);
         }
         Ok(AtFour { stress: four(&stress), ..out })
-    }
-
-    /// [`Material::changes`] from the memory of the points at the start of a step.
-    #[inline(always)]
-    fn changes_after(
-        &self,
-        h: &InLanes<D>,
-        dh: &InLanes<D>,
-        past: &Past,
-        count: usize,
-    ) -> Result<InLanes<D>, NotPositive> {
-        let mut changes = [[[0.0; LANES]; D]; D];
-        for l in 0..count {
-            let point = self.after(&get(h, l), &past.part(l, Self::MEMORY))?;
-            set(&mut changes, l, &self.change(&point, &get(dh, l)));
-        }
-        Ok(changes)
     }
 
     /// Cauchy stress within the dimensions of the body, P Fᵀ/J, of a point at H; of a law of small

@@ -20,7 +20,7 @@ use carom_algebra::{Mat, Vector};
 use super::hyperelastic::Material;
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
 use super::plane_stress::stress_free;
-use super::{NotPositive, Thickness};
+use super::{NotPositive, Past, Thickness};
 
 /// Energy W of the isochoric invariants.
 pub trait OfInvariants: Clone + Send + Sync {
@@ -73,7 +73,7 @@ impl<W: OfInvariants, const D: usize> Material<D> for Isochoric<W> {
     type Point = Point<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Point<D>, NotPositive> {
         let excess = valid_excess(h)?;
         let det_f = 1.0 + excess;
         let f = Mat::identity() + *h;

@@ -25,12 +25,12 @@ use carom_algebra::{Four, Mat, Real};
 
 use super::hardening::{Flow, Hardening};
 use super::hencky::Hencky;
-use super::hyperelastic::{AtFour, InLanes, Material};
+use super::hyperelastic::{Along, AtFour, Material};
 use super::kinematics::exp_m1;
 use super::past::Past;
-use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress};
-use super::{NotPositive, Thickness};
-use crate::points::{four, four_of, lanes};
+use super::principal_frame::{PrincipalFrame, PrincipalStress, by_principal_stress, store_moduli};
+use super::{Moduli, NotPositive, Thickness};
+use crate::points::LANES;
 
 /// Von Mises plasticity with isotropic hardening in logarithmic strains.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,11 +115,35 @@ impl<const D: usize, T: Real> Remembered<D, T> {
 }
 
 impl<const D: usize, T: Real> Point<D, T> {
+    /// Whether there is flow in a lane.
+    #[inline(always)]
+    fn flows(&self) -> bool {
+        self.flow.strain.find(|strain| strain > 0.0).is_some()
+    }
+
+    /// ∂ψ/∂F and its derivative: the stress without flow less that with it.
+    #[inline(always)]
+    fn released_stress(&self, mu: f64) -> PrincipalStress<D, T> {
+        let shear = T::of(2.0 * mu) - self.of.shear;
+        let mut kirchhoff = self.flown;
+        for a in 0..3 {
+            kirchhoff[a] = T::of(2.0 * mu) * self.flown[a];
+        }
+        PrincipalStress {
+            frame: self.of.frame,
+            kirchhoff,
+            volumetric: -shear / T::of(3.0),
+            shear,
+            softening: -self.of.softening,
+            direction: self.of.direction,
+        }
+    }
+
     /// Memory at the end of the step.
     #[inline(always)]
     fn end(&self) -> Remembered<D, T> {
         let mut end = self.start;
-        if self.flow.strain.find(|strain| strain > 0.0).is_none() {
+        if !self.flows() {
             return end;
         }
         let frame = &self.of.frame;
@@ -143,6 +167,23 @@ impl<const D: usize, T: Real> Point<D, T> {
     }
 }
 
+impl<const D: usize> Point<D, Four> {
+    /// Overwrites the memory of the points with that at the end of the step, unless it is empty.
+    #[inline(always)]
+    fn write_end(&self, memory: &mut [f64]) {
+        if memory.is_empty() {
+            return;
+        }
+        let mut numbers = [[0.0; LANES]; MOST];
+        self.end().write(|k, of_points: Four| numbers[k] = of_points.0);
+        for (l, of_point) in memory.chunks_exact_mut(components(D) + 1).enumerate() {
+            for k in 0..=components(D) {
+                of_point[k] = numbers[k][l];
+            }
+        }
+    }
+}
+
 impl J2 {
     /// The point from what it remembers.
     #[inline(always)]
@@ -150,10 +191,36 @@ impl J2 {
         &self,
         h: &Mat<D, T>,
         start: Remembered<D, T>,
-        past: &Past,
     ) -> Result<Point<D, T>, NotPositive> {
         let frame = PrincipalFrame::new(h, Some(&start.plastic), start.across)?;
-        Ok(self.respond(frame, start, !past.frozen))
+        Ok(self.respond(frame, start))
+    }
+
+    /// Four points from what they remember.
+    #[inline(always)]
+    fn four_points<const D: usize>(
+        &self,
+        h: &Mat<D, Four>,
+        past: &Past,
+    ) -> Result<Point<D, Four>, NotPositive> {
+        let mut numbers = [[0.0; LANES]; MOST];
+        for (l, of_point) in past.memory.chunks_exact(components(D) + 1).enumerate() {
+            for k in 0..=components(D) {
+                numbers[k][l] = of_point[k];
+            }
+        }
+        self.kinematics(h, Remembered::read(|k| Four(numbers[k])))
+    }
+
+    /// Energies and stress of points.
+    #[inline(always)]
+    fn found<const D: usize>(&self, point: &Point<D, Four>) -> AtFour<D> {
+        AtFour {
+            stored: point.stored,
+            stress: point.of.stress(),
+            dissipated: self.lost(point),
+            released: point.released,
+        }
     }
 
     /// Energy that is dissipated in the step.
@@ -162,14 +229,13 @@ impl J2 {
         T::of(self.hardening.initial()) * p.flow.strain
     }
 
-    /// The point of a frame from what it remembers, with flow or without. Where nothing flows, the
-    /// formulas of flow give the elastic response.
+    /// The point of a frame from what it remembers. Where nothing flows, the formulas of flow give
+    /// the elastic response.
     #[inline(always)]
     fn respond<const D: usize, T: Real>(
         &self,
         frame: PrincipalFrame<D, T>,
         start: Remembered<D, T>,
-        may_flow: bool,
     ) -> Point<D, T> {
         let mu = self.elastic.mu;
         let one = T::of(1.0);
@@ -178,14 +244,13 @@ impl J2 {
         let norm = (x * x + y * y + z * z).map(f64::sqrt);
         let mises = T::of(6.0_f64.sqrt() * mu) * norm;
         let strength = self.hardening.at(start.alpha);
-        let most = if may_flow { f64::INFINITY } else { 0.0 };
-        let excess = (mises - strength.stress).map(|excess| excess.clamp(0.0, most));
+        let excess = (mises - strength.stress).max(T::ZERO);
         let flow = self.hardening.flow(start.alpha, excess, 3.0 * mu);
         let flows = excess.map(|excess| if excess > 0.0 { 1.0 } else { 0.0 });
-        let share = T::of(3.0 * mu) * flow.strain / mises.max(T::of(f64::MIN_POSITIVE));
+        let unit = one / norm.max(T::of(f64::MIN_POSITIVE));
+        let share = T::of(1.5_f64.sqrt()) * flow.strain * unit;
         let shear = T::of(2.0 * mu) * (one - share);
         let mean = T::of(self.elastic.bulk()) * frame.trace();
-        let unit = one / norm.max(T::of(f64::MIN_POSITIVE));
         let mut kirchhoff = strains;
         let mut direction = strains;
         let mut elastic = strains;
@@ -217,13 +282,9 @@ impl<const D: usize> Material<D> for J2 {
     const SPLITS: bool = true;
     type Point = Point<D>;
 
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
-        self.after(h, &Past::new(&[0.0; MOST][..=components(D)], 0.0))
-    }
-
     #[inline(always)]
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point<D>, NotPositive> {
-        self.kinematics(h, Remembered::read(|k| past.memory[k]), past)
+        self.kinematics(h, Remembered::read(|k| past.memory[k]))
     }
 
     #[inline(always)]
@@ -232,46 +293,49 @@ impl<const D: usize> Material<D> for J2 {
     }
 
     #[inline(always)]
-    fn after_four(
+    fn four(
         &self,
         h: &Mat<D, Four>,
         past: &Past,
         _: usize,
         memory: &mut [f64],
     ) -> Result<AtFour<D>, NotPositive> {
-        let size = <Self as Material<D>>::MEMORY;
-        let start = Remembered::read(|k| four_of(past.memory, size, k));
-        let point = self.kinematics(h, start, past)?;
-        if !memory.is_empty() {
-            point.end().write(
-                #[inline(always)]
-                |k, numbers: Four| {
-                    for (of_point, number) in memory.chunks_exact_mut(size).zip(numbers.0) {
-                        of_point[k] = number;
-                    }
-                },
-            );
-        }
-        Ok(AtFour {
-            stored: point.stored,
-            stress: point.of.stress(),
-            dissipated: self.lost(&point),
-            released: point.released,
-        })
+        let point = self.four_points(h, past)?;
+        point.write_end(memory);
+        Ok(self.found(&point))
     }
 
     #[inline(always)]
-    fn changes_after(
+    fn four_along(
         &self,
-        h: &InLanes<D>,
-        dh: &InLanes<D>,
+        h: &Mat<D, Four>,
+        df: Option<&Mat<D, Four>>,
         past: &Past,
         _: usize,
-    ) -> Result<InLanes<D>, NotPositive> {
-        let size = <Self as Material<D>>::MEMORY;
-        let start = Remembered::read(|k| four_of(past.memory, size, k));
-        let point = self.kinematics(&four(h), start, past)?;
-        Ok(lanes(&point.of.change(&four(dh))))
+    ) -> Result<Along<D>, NotPositive> {
+        let point = self.four_points(h, past)?;
+        let change = |of: &PrincipalStress<D, Four>| df.map_or(Mat::ZERO, |df| of.change(df));
+        let along = Along::elastic(self.found(&point), change(&point.of));
+        if !point.flows() {
+            return Ok(along);
+        }
+        let released = point.released_stress(self.elastic.mu);
+        Ok(Along { released_stress: released.stress(), released_change: change(&released), ..along })
+    }
+
+    #[inline(always)]
+    fn moduli(
+        &self,
+        h: &Mat<D, Four>,
+        past: &Past,
+        _: usize,
+        memory: &mut [f64],
+        moduli: &mut Moduli<D>,
+    ) -> Result<AtFour<D>, NotPositive> {
+        let point = self.four_points(h, past)?;
+        point.write_end(memory);
+        store_moduli(&point.of, moduli);
+        Ok(self.found(&point))
     }
 
     #[inline(always)]

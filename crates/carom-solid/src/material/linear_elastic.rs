@@ -7,8 +7,8 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::NotPositive;
-use super::hyperelastic::Material;
+use super::hyperelastic::{AtFour, Material};
+use super::{NotPositive, Past};
 
 /// Linear elasticity with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl<const D: usize> Material<D> for LinearElastic {
     type Point = Point<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Point<D>, NotPositive> {
         Ok(Point(strain_of(h)))
     }
 
@@ -56,10 +56,10 @@ impl<const D: usize> Material<D> for LinearElastic {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn four(&self, h: &Mat<D, Four>, _: &Past, _: usize, _: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         let strain = strain_of(h);
         let stress = self.stress_of(&strain);
-        Ok((Four::of(0.5) * stress.double_dot(&strain), stress))
+        Ok(AtFour::elastic(Four::of(0.5) * stress.double_dot(&strain), stress))
     }
 
     #[inline(always)]

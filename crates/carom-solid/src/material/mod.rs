@@ -30,7 +30,7 @@ mod yeoh;
 
 pub use hardening::{Hardening, Table};
 pub use hencky::Hencky;
-pub use hyperelastic::{AtFour, InLanes, Material};
+pub use hyperelastic::{Along, AtFour, Material, Moduli};
 pub use isochoric::{Isochoric, OfInvariants, Slopes};
 pub use j2::J2;
 pub use kinematics::NotPositive;
@@ -41,7 +41,7 @@ pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;
 pub use past::Past;
 pub use plane_stress::{PlaneStress, Thickness};
-pub(crate) use pointwise::{ModuliMats, Pointwise};
+pub(crate) use pointwise::Pointwise;
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub(crate) use volumetric::Mean;
 pub use yeoh::Yeoh;

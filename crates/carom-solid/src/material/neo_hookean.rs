@@ -13,10 +13,9 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::NotPositive;
-use super::hyperelastic::{InLanes, Material};
+use super::hyperelastic::{Along, AtFour, Material};
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
-use crate::points::{four, lanes};
+use super::{NotPositive, Past};
 
 /// Compressible neo-Hookean law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +85,7 @@ impl<const D: usize> Material<D> for NeoHookean {
     type Point = Point<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Point<D>, NotPositive> {
         Self::kinematics(h)
     }
 
@@ -101,9 +100,9 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn four(&self, h: &Mat<D, Four>, _: &Past, _: usize, _: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         let point = Self::kinematics(h)?;
-        Ok((self.energy_of(&point), self.stress_of(&point)))
+        Ok(AtFour::elastic(self.energy_of(&point), self.stress_of(&point)))
     }
 
     #[inline(always)]
@@ -121,8 +120,16 @@ impl<const D: usize> Material<D> for NeoHookean {
     }
 
     #[inline(always)]
-    fn changes(&self, h: &InLanes<D>, dh: &InLanes<D>, _: usize) -> Result<InLanes<D>, NotPositive> {
-        Ok(lanes(&self.change_of(&Self::kinematics(&four(h))?, &four(dh))))
+    fn four_along(
+        &self,
+        h: &Mat<D, Four>,
+        df: Option<&Mat<D, Four>>,
+        _: &Past,
+        _: usize,
+    ) -> Result<Along<D>, NotPositive> {
+        let point = Self::kinematics(h)?;
+        let at = AtFour::elastic(self.energy_of(&point), self.stress_of(&point));
+        Ok(Along::elastic(at, df.map_or(Mat::ZERO, |df| self.change_of(&point, df))))
     }
 
     fn lateral(&self, p: &Point<D>) -> f64 {

@@ -9,15 +9,20 @@ pub struct Past<'a> {
     pub memory: &'a [f64],
     /// Δt.
     pub dt: f64,
-    /// Whether the response is asked for as if nothing evolved in the step
-    /// ([`Material::SPLITS`](super::Material::SPLITS)).
-    pub frozen: bool,
 }
+
+/// Memory of a point at the start of a run.
+const NOTHING: [f64; 64] = [0.0; 64];
 
 impl<'a> Past<'a> {
     /// From the memory at the start of a step and the length of the step.
     pub fn new(memory: &'a [f64], dt: f64) -> Self {
-        Self { memory, dt, frozen: false }
+        Self { memory, dt }
+    }
+
+    /// A point that remembers `size` numbers, at the start of a run.
+    pub(crate) fn virgin(size: usize) -> Self {
+        Self::new(&NOTHING[..size], 0.0)
     }
 
     /// The memory of one of many points or cells with `size` numbers each.

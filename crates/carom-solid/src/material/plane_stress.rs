@@ -112,12 +112,6 @@ impl<L: Thickness> Material<2> for PlaneStress<L> {
 
     // Not inlined: a call costs little compared with the solution for the thickness.
     #[inline(never)]
-    fn at(&self, h: &Mat<2>) -> Result<Self::Point, NotPositive> {
-        let across = self.0.excess_stretch(h)?;
-        Ok(SheetPoint { of: self.0.at(&in_space(h, across))?, across })
-    }
-
-    #[inline(never)]
     fn after(&self, h: &Mat<2>, past: &Past) -> Result<Self::Point, NotPositive> {
         let across = self.0.excess_stretch_after(h, past)?;
         Ok(SheetPoint { of: self.0.after(&in_space(h, across), past)?, across })

@@ -4,16 +4,13 @@
 //! what it computes, and compiling every law into the loops of every shape took two thirds of the
 //! time for compiling this crate.
 
-use carom_algebra::{Four, Mat, Real, Vector, wide};
+use carom_algebra::{Mat, Vector, wide};
 
-use super::hyperelastic::AtFour;
+use super::hyperelastic::{Along, AtFour, Moduli};
 use super::past::Past;
 use super::{Material, NotPositive};
 use crate::body::PointState;
-use crate::points::{LANES, Lanes, Mats, four, get, set};
-
-/// ∂P/∂F at each of the points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
-pub(crate) type ModuliMats<const D: usize> = [[Mats<D>; D]; D];
+use crate::points::{Lanes, Mats, four, lanes};
 
 /// Properties of a law that discrete gradients depend on.
 #[derive(Clone, Copy)]
@@ -45,14 +42,14 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
         memory: &mut [f64],
     ) -> Result<AtFour<D>, NotPositive>;
 
-    /// Energies, P and ∂P/∂F; not [`AtFour::released`].
+    /// Energies, P and ∂P/∂F.
     fn tangents(
         &self,
         h: &Mats<D>,
         past: &Past,
         count: usize,
         memory: &mut [f64],
-        moduli: &mut ModuliMats<D>,
+        moduli: &mut Moduli<D>,
     ) -> Result<AtFour<D>, NotPositive>;
 
     /// ∂P/∂F : dF.
@@ -63,6 +60,15 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
         past: &Past,
         count: usize,
     ) -> Result<Mats<D>, NotPositive>;
+
+    /// Energies and P, with flow and without, and their changes along dF.
+    fn along(
+        &self,
+        h: &Mats<D>,
+        dh: Option<&Mats<D>>,
+        past: &Past,
+        count: usize,
+    ) -> Result<Along<D>, NotPositive>;
 
     /// [`Material::MEMORY`].
     fn memory(&self) -> usize;
@@ -101,13 +107,7 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     ) -> Result<AtFour<D>, NotPositive> {
         wide(
             #[inline(always)]
-            || {
-                if const { L::MEMORY > 0 } {
-                    return self.after_four(&four(h), past, count, memory);
-                }
-                let (stored, stress) = self.at_four(&four(h), count)?;
-                Ok(AtFour::elastic(stored, stress))
-            },
+            || self.four(&four(h), past, count, memory),
         )
     }
 
@@ -117,31 +117,11 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         past: &Past,
         count: usize,
         memory: &mut [f64],
-        moduli: &mut ModuliMats<D>,
+        moduli: &mut Moduli<D>,
     ) -> Result<AtFour<D>, NotPositive> {
         wide(
             #[inline(always)]
-            || {
-                let mut out = AtFour::elastic(Four::ZERO, Mat::ZERO);
-                let mut stress = [[[0.0; LANES]; D]; D];
-                let mut memories = memory.chunks_exact_mut(L::MEMORY.max(1));
-                let unit = Mat::<D>::identity().0.map(Vector);
-                for l in 0..count {
-                    let point = self.after(&get(h, l), &past.part(l, L::MEMORY))?;
-                    out.stored.0[l] = self.energy(&point);
-                    out.dissipated.0[l] = self.dissipated(&point);
-                    set(&mut stress, l, &self.stress(&point));
-                    if let Some(memory) = memories.next() {
-                        self.remember(&point, memory);
-                    }
-                    for (row, a) in moduli.iter_mut().zip(&unit) {
-                        for (block, b) in row.iter_mut().zip(&unit) {
-                            set(block, l, &self.tangent(&point, a, b));
-                        }
-                    }
-                }
-                Ok(AtFour { stress: four(&stress), ..out })
-            },
+            || self.moduli(&four(h), past, count, memory, moduli),
         )
     }
 
@@ -154,12 +134,20 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
     ) -> Result<Mats<D>, NotPositive> {
         wide(
             #[inline(always)]
-            || {
-                if const { L::MEMORY > 0 } {
-                    return self.changes_after(h, dh, past, count);
-                }
-                self.changes(h, dh, count)
-            },
+            || Ok(lanes(&self.four_along(&four(h), Some(&four(dh)), past, count)?.change)),
+        )
+    }
+
+    fn along(
+        &self,
+        h: &Mats<D>,
+        dh: Option<&Mats<D>>,
+        past: &Past,
+        count: usize,
+    ) -> Result<Along<D>, NotPositive> {
+        wide(
+            #[inline(always)]
+            || self.four_along(&four(h), dh.map(four).as_ref(), past, count),
         )
     }
 

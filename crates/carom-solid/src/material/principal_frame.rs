@@ -19,10 +19,11 @@
 //! The eigenvalues are those of b − I = H + Hᵀ + H Hᵀ + F (A − I) Fᵀ, so that small strains keep
 //! their accuracy.
 
-use carom_algebra::{Mat, Real, Vector, principal_axes};
+use carom_algebra::{Four, Mat, Real, Vector, principal_axes};
 
-use super::NotPositive;
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
+use super::{Moduli, NotPositive};
+use crate::points::lanes;
 
 /// F, its inverse, and the principal axes of b.
 #[derive(Clone, Copy)]
@@ -138,6 +139,40 @@ impl<const D: usize, T: Real> PrincipalStress<D, T> {
         self.frame.tensor(&self.kirchhoff) * self.frame.inverse_transposed
     }
 
+    /// ∂P/∂F, the blocks of unit vectors. The upper ones follow from the symmetry of the tangent.
+    #[inline(always)]
+    pub(super) fn moduli(&self) -> [[Mat<D, T>; D]; D] {
+        let to_axes = (self.frame.axes.transposed() * self.frame.inverse_transposed).transposed();
+        let mut moduli = [[Mat::ZERO; D]; D];
+        for j in 0..D {
+            for l in 0..=j {
+                let block = self.block(&to_axes.0[j], &to_axes.0[l]);
+                moduli[j][l] = block;
+                moduli[l][j] = block.transposed();
+            }
+        }
+        moduli
+    }
+
+    /// The block of vectors given by F⁻ᵀa and F⁻ᵀb in the principal axes.
+    #[inline(always)]
+    fn block(&self, a: &[T; D], b: &[T; D]) -> Mat<D, T> {
+        let PrincipalFrame { axes, squares, slopes, .. } = &self.frame;
+        let mut block = Mat::ZERO;
+        for i in 0..D {
+            block.0[i][i] = a[i] * (self.stiffness(i, i) - self.kirchhoff[i]) * b[i];
+            for k in 0..D {
+                if k != i {
+                    let turning = self.shear * slopes[i][k];
+                    block.0[i][k] = a[i] * self.stiffness(i, k) * b[k]
+                        + (turning * squares[i] - self.kirchhoff[i]) * b[i] * a[k];
+                    block.0[i][i] = block.0[i][i] + turning * squares[k] * b[k] * a[k];
+                }
+            }
+        }
+        *axes * block * axes.transposed()
+    }
+
     /// dP of dF.
     #[inline(always)]
     pub(super) fn change(&self, df: &Mat<D, T>) -> Mat<D, T> {
@@ -164,21 +199,8 @@ impl<const D: usize> PrincipalStress<D> {
     /// with each unit vector e.
     #[inline(always)]
     pub(super) fn tangent(&self, a: &Vector<D>, b: &Vector<D>) -> Mat<D> {
-        let PrincipalFrame { axes, squares, slopes, inverse_transposed, .. } = &self.frame;
-        let to_axes = axes.transposed() * *inverse_transposed;
-        let a = to_axes.apply(a);
-        let b = to_axes.apply(b);
-        let mut block = Mat::ZERO;
-        for i in 0..D {
-            block.0[i][i] = a[i] * (self.stiffness(i, i) - self.kirchhoff[i]) * b[i];
-            for k in (0..D).filter(|&k| k != i) {
-                let turning = self.shear * slopes[i][k];
-                block.0[i][k] = a[i] * self.stiffness(i, k) * b[k]
-                    + (turning * squares[i] - self.kirchhoff[i]) * b[i] * a[k];
-                block.0[i][i] += turning * squares[k] * b[k] * a[k];
-            }
-        }
-        *axes * block * axes.transposed()
+        let to_axes = self.frame.axes.transposed() * self.frame.inverse_transposed;
+        self.block(&to_axes.apply(a).0, &to_axes.apply(b).0)
     }
 
     /// Cauchy stress within the dimensions of the body.
@@ -189,6 +211,17 @@ impl<const D: usize> PrincipalStress<D> {
     /// Cauchy normal stress in the other directions; zero in space, which has none.
     pub(super) fn lateral(&self) -> f64 {
         if D < 3 { self.kirchhoff[2] / self.frame.det_f } else { 0.0 }
+    }
+}
+
+/// Stores ∂P/∂F of the points of a law in principal stresses.
+#[inline(always)]
+pub(super) fn store_moduli<const D: usize>(of: &PrincipalStress<D, Four>, moduli: &mut Moduli<D>) {
+    let found = of.moduli();
+    for j in 0..D {
+        for l in 0..D {
+            moduli[j][l] = lanes(&found[j][l]);
+        }
     }
 }
 

@@ -7,9 +7,9 @@
 
 use carom_algebra::{Four, Mat, Real, Vector};
 
-use super::NotPositive;
-use super::hyperelastic::Material;
+use super::hyperelastic::{AtFour, Material};
 use super::kinematics::valid_excess;
+use super::{NotPositive, Past};
 
 /// St. Venant–Kirchhoff law with Lamé's constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     type Point = Point<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<Point<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<Point<D>, NotPositive> {
         self.kinematics(h)
     }
 
@@ -60,9 +60,10 @@ impl<const D: usize> Material<D> for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn four(&self, h: &Mat<D, Four>, _: &Past, _: usize, _: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         let point = self.kinematics(h)?;
-        Ok((Four::of(0.5) * point.second.double_dot(&point.e), point.f * point.second))
+        let energy = Four::of(0.5) * point.second.double_dot(&point.e);
+        Ok(AtFour::elastic(energy, point.f * point.second))
     }
 
     #[inline(always)]

@@ -15,7 +15,7 @@
 use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::kinematics::{excess_cofactor, ln_1p, valid_excess};
-use super::{Hencky, Isochoric, J2, Law, Material, NotPositive, Pointwise};
+use super::{AtFour, Hencky, Isochoric, J2, Law, Material, NotPositive, Past, Pointwise};
 
 /// What mean dilatation needs of a law.
 pub(crate) struct Mean<const D: usize> {
@@ -135,7 +135,7 @@ impl<const D: usize> Material<D> for Swelling {
     type Point = OfSwelling<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<OfSwelling<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<OfSwelling<D>, NotPositive> {
         OfSwelling::at(h)
     }
 
@@ -150,9 +150,9 @@ impl<const D: usize> Material<D> for Swelling {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn four(&self, h: &Mat<D, Four>, _: &Past, _: usize, _: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         let point = OfSwelling::at(h)?;
-        Ok((point.excess, point.cofactor))
+        Ok(AtFour::elastic(point.excess, point.cofactor))
     }
 
     /// J (ã⊗b̃ − b̃⊗ã), ã = F⁻ᵀa.
@@ -200,7 +200,7 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     type Point = OfStrain<D>;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<OfStrain<D>, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<OfStrain<D>, NotPositive> {
         OfStrain::at(h)
     }
 
@@ -215,9 +215,9 @@ impl<const D: usize> Material<D> for TraceOfStrain {
     }
 
     #[inline(always)]
-    fn at_four(&self, h: &Mat<D, Four>, _: usize) -> Result<(Four, Mat<D, Four>), NotPositive> {
+    fn four(&self, h: &Mat<D, Four>, _: &Past, _: usize, _: &mut [f64]) -> Result<AtFour<D>, NotPositive> {
         let point = OfStrain::at(h)?;
-        Ok((point.trace(), Mat::identity() + point.h))
+        Ok(AtFour::elastic(point.trace(), Mat::identity() + point.h))
     }
 
     #[inline(always)]
@@ -245,7 +245,7 @@ impl<const D: usize> Material<D> for SmallSwelling {
     type Point = f64;
 
     #[inline(always)]
-    fn at(&self, h: &Mat<D>) -> Result<f64, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<f64, NotPositive> {
         Ok(h.trace())
     }
 

@@ -6,7 +6,7 @@ use super::memory::{Energies, Step};
 use super::{Place, Solid};
 use crate::body::Inverted;
 use crate::discrete_gradient::{between, change_between};
-use crate::material::{AtFour, ModuliMats, NotPositive};
+use crate::material::{AtFour, Moduli, NotPositive};
 use crate::points::{Blocks, LANES, Lanes, Mats, lanes, sum};
 use crate::potential::Potential;
 use crate::shape::Shape;
@@ -19,12 +19,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
         &self,
         step: Step<D>,
         fields: [&[f64]; M],
-        at: impl Fn(
-            &Potential<D>,
-            &[Mats<D>; M],
-            &mut [f64],
-            &mut ModuliMats<D>,
-        ) -> Result<AtFour<D>, NotPositive>,
+        at: impl Fn(&Potential<D>, &[Mats<D>; M], &mut [f64], &mut Moduli<D>) -> Result<AtFour<D>, NotPositive>,
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
     ) -> Result<Energies, Inverted> {

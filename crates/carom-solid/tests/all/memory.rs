@@ -52,10 +52,6 @@ impl<const D: usize, L: Material<D> + 'static> Material<D> for Damage<L> {
     const MEMORY: usize = 1;
     type Point = DamagedPoint<L::Point>;
 
-    fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
-        self.after(h, &Past::new(&[0.0], 0.0))
-    }
-
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Self::Point, NotPositive> {
         let of = self.of.at(h)?;
         let energy = self.of.energy(&of);

@@ -3,6 +3,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use carom_algebra::Real;
 use carom_solid::Past;
 use carom_solid::material::{Hardening, Hencky, J2, PlaneStress, Table};
 
@@ -15,6 +16,12 @@ fn metal() -> J2 {
     }
 }
 
+/// The law with a yield stress that is never reached: what hardening has stored is the same.
+fn without_flow() -> J2 {
+    let hardening = Hardening::Linear { yield_stress: 1e9, modulus: 0.4 };
+    J2 { hardening, ..metal() }
+}
+
 /// A law in one step from a memory, as a law without: Ψ is then the incremental potential.
 struct Step<'a, L> {
     law: &'a L,
@@ -24,7 +31,7 @@ struct Step<'a, L> {
 impl<const D: usize, L: Material<D>> Material<D> for Step<'_, L> {
     type Point = L::Point;
 
-    fn at(&self, h: &Mat<D>) -> Result<L::Point, NotPositive> {
+    fn after(&self, h: &Mat<D>, _: &Past) -> Result<L::Point, NotPositive> {
         self.law.after(h, &Past::new(self.memory, 1.0))
     }
 
@@ -194,8 +201,8 @@ fn flow_is_isochoric_and_dissipates() {
             let dissipated = Material::<D>::dissipated(&law, &point);
             assert!(dissipated >= 0.0 && alpha >= before);
             assert!((dissipated - 0.15 * (alpha - before)).abs() < 1e-15);
-            let frozen = Past { frozen: true, ..Past::new(&start, 1.0) };
-            let elastic = Material::<D>::energy(&law, &law.after(&h, &frozen).unwrap());
+            let strong = without_flow();
+            let elastic = Material::<D>::energy(&strong, &strong.after(&h, &Past::new(&start, 1.0)).unwrap());
             let released = elastic - Material::<D>::energy(&law, &point) - dissipated;
             assert!((released - Material::<D>::released(&law, &point)).abs() < 1e-13);
             total += dissipated;
@@ -319,7 +326,12 @@ fn four_points_at_once_are_single_points() {
         }
         let mut remembered = vec![0.0; 4 * size];
         let past = Past::new(&memory, 1.0);
-        let four = law.after_four(&lanes, &past, 4, &mut remembered).unwrap();
+        let four = law.four(&lanes, &past, 4, &mut remembered).unwrap();
+        let df = path[2];
+        let along = law.four_along(&lanes, Some(&Mat(df.0.map(|row| row.map(Four::of)))), &past, 4).unwrap();
+        let mut moduli = [[[[[0.0; 4]; D]; D]; D]; D];
+        let by_moduli = law.moduli(&lanes, &past, 4, &mut [], &mut moduli).unwrap();
+        let unit = Mat::<D>::identity().0.map(Vector);
         for (l, h) in ends.iter().enumerate() {
             let of_point = l * size..(l + 1) * size;
             let past = Past::new(&memory[of_point.clone()], 1.0);
@@ -330,7 +342,26 @@ fn four_points_at_once_are_single_points() {
             assert_eq!(law.energy(&point), four.stored.0[l]);
             assert_eq!(law.dissipated(&point), four.dissipated.0[l]);
             let stress = law.stress(&point);
-            (0..D).for_each(|i| (0..D).for_each(|j| assert_eq!(stress.0[i][j], four.stress.0[i][j].0[l])));
+            let lane = |of: &Mat<D, Four>| Mat(of.0.map(|row| row.map(|x| x.0[l])));
+            assert_eq!(stress, lane(&four.stress));
+            assert_eq!(stress, lane(&along.at.stress));
+            assert_eq!(stress, lane(&by_moduli.stress));
+            // The stress without flow, and its change, are those of a law that never yields.
+            let strong = without_flow();
+            let elastic = Material::<D>::after(&strong, h, &past).unwrap();
+            let change = law.change(&point, &df);
+            let near = |a: Mat<D>, b: Mat<D>| {
+                assert!((a - b).double_dot(&(a - b)).sqrt() < 1e-13, "{a:?} against {b:?}")
+            };
+            near(lane(&along.change), change);
+            near(lane(&along.released_stress), Material::<D>::stress(&strong, &elastic) - stress);
+            near(lane(&along.released_change), strong.change(&elastic, &df) - change);
+            for j in 0..D {
+                for k in 0..D {
+                    let block = Mat(moduli[j][k].map(|row| row.map(|x| x[l])));
+                    near(block, law.tangent(&point, &unit[j], &unit[k]));
+                }
+            }
         }
         let is_mixed = four.dissipated.0.iter().any(|lost| *lost > 0.0) && four.dissipated.0.contains(&0.0);
         mixed.fetch_add(usize::from(is_mixed), Ordering::Relaxed);
