@@ -16,6 +16,10 @@ use crate::skin::{CHORDS, Skin};
 /// inside a fold.
 const SHARPEST: f64 = PI / 6.0;
 
+/// Depth behind a facet over its length from which on the angle tells a point inside the body from
+/// one behind other parts of it; chords do not tell smaller ones.
+pub(crate) const BEHIND: f64 = 0.01;
+
 /// A node of a boundary that lies inside its own body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InsideItself {
@@ -38,7 +42,7 @@ impl Skin {
             let nodes = surface.facet(facet).nodes;
             // The last node is the first of another facet.
             for &node in nodes.iter().enumerate().filter(|(k, _)| *k != 1).map(|(_, node)| node) {
-                if surface.seen_from(node, at) < 2.0 * PI + SHARPEST {
+                if !surface.covers(node, at) {
                     continue;
                 }
                 let nearest = (0..surface.all())
@@ -60,11 +64,25 @@ impl Skin {
 }
 
 impl Surface {
+    /// Whether a node lies in another part of its own body.
+    pub(crate) fn covers(&self, node: usize, y: Places) -> bool {
+        self.seen_from(node, y) >= 2.0 * PI + SHARPEST
+    }
+
+    /// Whether a point of the facet with these nodes lies in another part of its own body.
+    pub(crate) fn covers_point(&self, own: &[usize], point: Vector<2>, y: Places) -> bool {
+        self.angle_around(point, |facet| self.facet(facet).nodes == own, y) >= 2.0 * PI + SHARPEST
+    }
+
     /// Angle under which a node sees the facets of its own boundary that do not contain it.
     pub(crate) fn seen_from(&self, node: usize, y: Places) -> f64 {
-        let from: Vector<2> = y.at(node);
+        self.angle_around(y.at(node), |facet| self.facet(facet).nodes.contains(&node), y)
+    }
+
+    /// Angle under which a point sees the boundary without the facets on which it lies.
+    fn angle_around(&self, from: Vector<2>, is_own: impl Fn(usize) -> bool, y: Places) -> f64 {
         let mut angle = 0.0;
-        for facet in (0..self.all()).filter(|&facet| !self.facet(facet).nodes.contains(&node)) {
+        for facet in (0..self.all()).filter(|&facet| !is_own(facet)) {
             let place = |k: usize| self.facet(facet).at(y, 2.0 * k as f64 / CHORDS as f64 - 1.0).position;
             let mut start = place(0) - from;
             for k in 1..=CHORDS {

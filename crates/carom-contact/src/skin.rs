@@ -7,6 +7,7 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
 use crate::depth::NearestOnFacet;
+use crate::inside_itself::BEHIND;
 use crate::kinematics::{Depth, Facets, Folds, Side, Surface, Turns, amplification};
 use crate::places::Places;
 
@@ -93,7 +94,14 @@ impl Skin {
                 nearest = Some((facet, distance));
             }
         }
-        nearest.map(|(facet, _)| self.surface.depth(facet, point, y))
+        let (facet, _) = nearest?;
+        let found = self.surface.depth(facet, point, y);
+        // Behind a winding of a spiral, or another part, a node is not inside that facet.
+        let is_behind = -found.distance > BEHIND * self.surface.length(facet, places);
+        if is_behind && !self.surface.covers(node, places) {
+            return Some(Depth { distance: -found.distance, ..found });
+        }
+        Some(found)
     }
 
     /// Distance between a point and the point ξ of a facet, which need not be the nearest one.

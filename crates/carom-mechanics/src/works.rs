@@ -32,7 +32,8 @@
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
 //! the balance. Where a prescribed velocity jumps, J = v_{s+1} − v_s − Δt ā is its change beyond
-//! its mean acceleration, and the impulse M J is one of the supports, too.
+//! its mean acceleration, and the impulse M J is one of the supports, too: it works at the mean
+//! velocity, which is not that of the path Δy.
 
 use carom_algebra::sums::dot;
 use carom_contact::{Row, Rows};
@@ -112,7 +113,7 @@ impl Works {
             model.points.carry(&mut jump);
             let mut impulse = vec![0.0; increment.len()];
             model.mass.multiply_into(&jump, &mut impulse);
-            external += dot(increment, &means.supports) + dot(increment, &impulse) / dt;
+            external += dot(increment, &means.supports) + dot(&mean_velocity(equations, next), &impulse);
         }
         Self { external, contact: dot(increment, &means.contact), friction }
     }
@@ -212,9 +213,9 @@ fn turned_friction(last: &Evaluation, next: &State) -> Vec<f64> {
     turned
 }
 
-/// Work on the neighbours of prescribed dofs of the inertia M J/Δt that their balance lacks: J = Δv
-/// − Δt (a_s + a_{s+1})/2 is the change of prescribed velocities beyond their acceleration, which
-/// the balance averages like forces.
+/// Work of the impulse M J of supports, less what is booked of it along the path of prescribed dofs:
+/// J = Δv − Δt (a_s + a_{s+1})/2 is the change of prescribed velocities beyond their acceleration,
+/// which the balance averages like forces. The balance of their neighbours lacks its inertia.
 fn work_of_jumps(equations: &Equations, next: &State, increment: &[f64], dt: f64) -> f64 {
     let Equations { model, state, .. } = equations;
     let mut jump = vec![0.0; increment.len()];
@@ -226,10 +227,15 @@ fn work_of_jumps(equations: &Equations, next: &State, increment: &[f64], dt: f64
     model.points.carry(&mut jump);
     let mut inertia = vec![0.0; increment.len()];
     model.mass.multiply_into(&jump, &mut inertia);
-    let all = dot(increment, &inertia);
+    let all = dot(&mean_velocity(equations, next), &inertia);
     model.points.gather(&mut inertia);
-    let of_prescribed: f64 = model.motions.dofs().map(|i| increment[i] * inertia[i]).sum();
-    (all - of_prescribed) / dt
+    let booked: f64 = model.motions.dofs().map(|i| increment[i] * inertia[i]).sum();
+    all - booked / dt
+}
+
+/// (v_s + v_{s+1})/2.
+fn mean_velocity(equations: &Equations, next: &State) -> Vec<f64> {
+    equations.state.v.iter().zip(&next.v).map(|(before, now)| 0.5 * (before + now)).collect()
 }
 
 /// Work Δy·(F_s + F_{s+1})/2.

@@ -121,7 +121,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                         // In the joint the node has both pairs. Beyond the reach of this facet that
                         // of the other one is responsible: an extrapolated facet is not the
                         // surface.
-                        if is_near(pair) || pair.active && !starts {
+                        if is_near(pair) {
                             return true;
                         }
                         moves.drop_pair(pair, PairEvent::HandOver { node, from: pair.facet, to });

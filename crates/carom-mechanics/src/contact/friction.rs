@@ -39,6 +39,7 @@ use carom_contact::{
     Along, ContactError, FrictionPair, FrictionState, Law, Pair, Radius, Row, Rows, Tangential, inner, length,
 };
 
+use crate::contact::loose::{hold, may_be_held};
 use crate::model::{Contact, Model, NoValue};
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
@@ -137,7 +138,8 @@ impl Equations<'_> {
     }
 
     /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in
-    /// it; the pair keeps the tangents there. `gap`: that of the pair.
+    /// it; the pair keeps the tangents there, and sticks without traction where supports hold both
+    /// sides. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
@@ -151,13 +153,23 @@ impl Equations<'_> {
         let at = self.measured_for_slip(contact, pair, middle, increment, slips)?;
         let part = self.part(contact, pair, gap, slips);
         let first = slips.len();
-        kinematics.slip(&at.pair, at.end.as_deref().unwrap_or(middle), increment, slips)?;
+        let y = at.end.as_deref().unwrap_or(middle);
+        kinematics.slip(&at.pair, y, increment, slips)?;
+        pair.tangential.tangents = slips.tangents(first);
+        if may_be_held(self.model, slips, first) {
+            let mut gaps = Rows::new(self.model.dimension);
+            kinematics.measure(&mut at.pair.clone(), y, &mut gaps)?;
+            if hold(self.model, gaps.row(0), slips, first, increment) == 0 {
+                let tangential = &mut pair.tangential;
+                tangential.friction_state = FrictionState::Stick;
+                (tangential.traction, tangential.before) = ([0.0; 2], [0.0; 2]);
+            }
+        }
         for row in first..slips.len() {
             let counted = |(dof, slope): (usize, f64)| slope * self.counted(dof, part, increment);
             let slip = slips.row(row).entries().map(counted).sum();
             *slips.gap_mut(row) = slip;
         }
-        pair.tangential.tangents = slips.tangents(first);
         Ok(part)
     }
 

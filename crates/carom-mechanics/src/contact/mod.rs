@@ -6,6 +6,7 @@ pub(crate) mod forces;
 pub(crate) mod friction;
 pub(crate) mod friction_tangent;
 pub(crate) mod independent;
+pub(crate) mod loose;
 pub(crate) mod prevented_slips;
 pub(crate) mod rounds;
 pub(crate) mod slip_derivatives;

@@ -12,10 +12,11 @@ use carom_algebra::{Cone, Couplings, Kind, LinearError};
 use carom_contact::{Along, Law, Pairing, Rows, Tangential};
 use carom_time::ImpulseShares;
 
-use super::rubbing::{combined, friction_state, kind, loose};
+use super::rubbing::{combined, friction_state, kind};
 use super::watch::{active, measure_into, moves, overconstrained};
 use crate::contact::constraints::Constraints;
 use crate::contact::independent::is_dependent;
+use crate::contact::loose::loose;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::stage::equations::Equations;

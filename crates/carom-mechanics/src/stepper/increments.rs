@@ -7,11 +7,12 @@ use carom_contact::{Law, Pair, Pairing, Rows, Tangential, inner};
 
 use super::StepReport;
 use super::forward::Forward;
-use super::rubbing::{combined, friction_state, kind, loose};
+use super::rubbing::{combined, friction_state, kind};
 use super::scratch::Scratch;
 use super::tied_mass::TiedMass;
 use super::watch::{active, carry_into, gap_at, measure_into, moves, overconstrained};
 use crate::contact::independent::is_dependent;
+use crate::contact::loose::loose;
 use crate::contact::update::search;
 use crate::model::Model;
 use crate::rejected::Rejected;

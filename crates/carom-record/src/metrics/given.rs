@@ -1,6 +1,6 @@
 //! Input of the metrics.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::episode::{Episode, default_bridge, episodes};
@@ -87,24 +87,25 @@ impl<'a> Given<'a> {
     /// Magnitude of the contact force in every row, of contacts that do not count as one the
     /// largest.
     pub(super) fn force(&self) -> Vec<f64> {
-        force(self.history, self.contacts())
+        force(self.history, self.contacts(), self.run)
     }
 
     /// Magnitude of the contact force in every row; of contacts that do not count as one, that of
     /// the contact with the largest force in the first episode.
     pub(super) fn force_of_first(&self) -> Option<Vec<f64>> {
         if count_as_one(self.contacts()) {
-            return Some(total_force(self.history));
+            return Some(self.force());
         }
         let rows = self.rows_in_contact()?;
         let peak = |force: &[f64]| force[rows.clone()].iter().copied().fold(0.0, f64::max);
         let larger = |one: Vec<f64>, other: Vec<f64>| if peak(&other) > peak(&one) { other } else { one };
-        of_contacts(self.history, self.contacts()).reduce(larger)
+        of_contacts(self.history, self.contacts(), self.run).reduce(larger)
     }
 
-    /// The impulse of all contacts, if they count as one.
+    /// The impulse of all contacts, if they count as one and act on two parties.
     pub(super) fn impulses(&self) -> Option<Vec<&'a [f64]>> {
-        count_as_one(self.contacts()).then(|| vector(self.history, "contact_impulse"))
+        let acts = count_as_one(self.contacts()) && !self.contacts().iter().any(is_of_itself);
+        acts.then(|| vector(self.history, "contact_impulse"))
     }
 
     /// Change of the impulse along an axis over the first episode.
@@ -142,26 +143,52 @@ pub(crate) fn count_as_one(contacts: &[ContactFacts]) -> bool {
     contacts.len() < 2 || bodies.len() == 1 && contacts.iter().all(|of| of.primary.is_none())
 }
 
+/// Whether a side is in contact with itself.
+fn is_of_itself(of: &ContactFacts) -> bool {
+    of.primary.as_deref() == Some(&of.secondary)
+}
+
+/// Sum of the normal forces of a contact in every row, from contact.csv. Where a side meets itself,
+/// either of two places may be the secondary one, and the forces on secondary places may cancel.
+fn pressing(run: &Run, history: &History, contact: &str) -> Vec<f64> {
+    let mut sums: BTreeMap<u64, f64> = BTreeMap::new();
+    for row in run.contact.iter().filter(|row| row.contact == contact) {
+        *sums.entry(row.step).or_default() += row.multiplier.abs();
+    }
+    let steps = history.column("step").unwrap_or(&[]);
+    steps.iter().map(|step| sums.get(&(*step as u64)).copied().unwrap_or(0.0)).collect()
+}
+
 /// Magnitudes of the forces of contacts that have columns of their own.
 fn of_contacts<'a>(
     history: &'a History,
     contacts: &'a [ContactFacts],
+    run: Option<&'a Run>,
 ) -> impl Iterator<Item = Vec<f64>> + 'a {
-    let forces = contacts.iter().map(|of| norms(&vector(history, &format!("{}.force", of.name))));
-    forces.filter(|force| !force.is_empty())
+    let force = move |of: &ContactFacts| match run {
+        Some(run) if is_of_itself(of) => pressing(run, history, &of.name),
+        _ => norms(&vector(history, &format!("{}.force", of.name))),
+    };
+    contacts.iter().map(force).filter(|force| !force.is_empty())
 }
 
 /// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
-fn force(history: &History, contacts: &[ContactFacts]) -> Vec<f64> {
-    if count_as_one(contacts) {
+fn force(history: &History, contacts: &[ContactFacts], run: Option<&Run>) -> Vec<f64> {
+    let is_one = count_as_one(contacts);
+    if let (true, [of], Some(run)) = (is_one, contacts, run)
+        && is_of_itself(of)
+    {
+        return pressing(run, history, &of.name);
+    }
+    if is_one {
         return total_force(history);
     }
     let larger = |one: Vec<f64>, other: Vec<f64>| one.iter().zip(&other).map(|(a, b)| a.max(*b)).collect();
-    let largest = of_contacts(history, contacts).reduce(larger);
+    let largest = of_contacts(history, contacts, run).reduce(larger);
     largest.unwrap_or_else(|| total_force(history))
 }
 
 /// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
 pub fn contact_force(run: &Run) -> Vec<f64> {
-    force(&run.history, &run.manifest.facts.contacts)
+    force(&run.history, &run.manifest.facts.contacts, Some(run))
 }

@@ -10,7 +10,8 @@
 //!
 //! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the largest pressure is at
 //! an outermost node, the model is one half of a symmetric problem, and c is the coordinate of that
-//! node. Of several contacts, the one with the largest load is used. Places along the contact are
+//! node. Where the parabola leaves more than half of the variance of p², as under a flat punch with
+//! its peaks at the edges, there is no ellipse. Of several contacts, the one with the largest load is used. Places along the contact are
 //! those of the plane; in space there are none.
 
 use super::samples::extreme;
@@ -19,7 +20,7 @@ use crate::{ContactRow, Run};
 /// Peak and half-width of the ellipse fitted to pressures at given coordinates.
 ///
 /// Needs three different coordinates (two in a half model); none if the fitted parabola has no
-/// maximum.
+/// maximum, or leaves more than half of the variance of p².
 pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let first = places.iter().copied().reduce(f64::min)?;
     let last = places.iter().copied().reduce(f64::max)?;
@@ -49,6 +50,19 @@ pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
         matrix[1][1] = 1.0;
     }
     let [a, b, c] = solved(matrix, right)?;
+    let count = places.len() as f64;
+    let mean = pressures.iter().map(|p| (p / size).powi(2)).sum::<f64>() / count;
+    let mut variance = 0.0;
+    let mut left = 0.0;
+    for (s, p) in places.iter().zip(pressures) {
+        let [one, x, xx] = powers(*s);
+        let square = (p / size).powi(2);
+        variance += (square - mean).powi(2);
+        left += (square - (a * one + b * x + c * xx)).powi(2);
+    }
+    if left > 0.5 * variance {
+        return None;
+    }
     // a + bx + cx² = peak + c(x − x₀)²
     let peak = a - b * b / (4.0 * c);
     (c < 0.0 && peak > 0.0).then(|| (size * peak.sqrt(), scale * (-peak / c).sqrt()))

@@ -687,3 +687,66 @@ energy_guard = false
         assert!(ledger.dissipation().abs() < 3e-3 * energy, "{scheme}: {:e}", ledger.dissipation());
     }
 }
+
+const PUNCH: &str = r#"
+dimension = 2
+material = [
+  { name = "soft", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.45 },
+  { name = "stiff", law = "neo-hookean", density = 1.0, young = 400.0, poisson = 0.2 },
+]
+contact = [{ name = "c", secondary = "up.bottom", primary = "pad.top", mu = 0.2 }]
+support = [
+  { name = "ground", on = ["pad.bottom"], fix = ["x", "y"] },
+  { name = "head", on = ["up.top"], move = { y = "-0.04*t" } },
+]
+time = { end = 1.0, step = 1.0, scheme = { kind = "static" } }
+[[body]]
+name = "up"
+material = "soft"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-0.6, 0.0], max = [0.6, 0.5], cells = [6, 3] }
+[[body]]
+name = "pad"
+material = "stiff"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-1.0, -0.5], max = [1.0, 0.0], cells = [10, 2] }
+"#;
+
+/// Half of a symmetric model has half of its friction: none at the node in the plane of symmetry,
+/// which both sides' supports hold.
+#[test]
+fn a_node_in_a_plane_of_symmetry_has_no_friction() {
+    let whole = finish(simulation(PUNCH, &[""; 0]));
+    let sets = [
+        "body.up.mesh={ shape = \"rectangle\", min = [0.0, 0.0], max = [0.6, 0.5], cells = [3, 3] }",
+        "body.pad.mesh={ shape = \"rectangle\", min = [0.0, -0.5], max = [1.0, 0.0], cells = [5, 2] }",
+        "support=[{ on = [\"pad.bottom\"], fix = [\"x\", \"y\"] }, { on = [\"up.top\"], move = { y = \"-0.04*t\" } }, { on = [\"up.left\", \"pad.left\"], fix = [\"x\"] }]",
+    ];
+    for enforcement in ["multiplier", "augmented"] {
+        let enforcement = format!("contact.c.enforcement={enforcement}");
+        let half = finish(simulation(PUNCH, &[&sets[..], &[enforcement.as_str()]].concat()));
+        let rubs = |sim: &Simulation| -> f64 {
+            let pairs = sim.state().pairs[0].iter().filter(|pair| pair.active);
+            pairs.map(|pair| pair.tangential.traction[0].abs()).sum()
+        };
+        assert!((2.0 * rubs(&half) / rubs(&whole) - 1.0).abs() < 1e-6, "{} {}", rubs(&half), rubs(&whole));
+        let force = [&half, &whole].map(|sim| sim.state().contact_forces[0][1]);
+        assert!((2.0 * force[0] / force[1] - 1.0).abs() < 1e-6, "{force:?}");
+        let first = &half.state().pairs[0][0];
+        assert!(first.active && first.tangential.friction_state == FrictionState::Stick);
+        assert!(first.tangential.traction[0].abs() < 1e-9, "{:?}", first.tangential);
+    }
+}
+
+/// A state is accepted with its pairs on their facets: none on the extension of one that the node
+/// has left, beside its pair with the next.
+#[test]
+fn pairs_lie_on_their_facets() {
+    let sets = ["contact.c.secondary=pad.top", "contact.c.primary=up.bottom"];
+    let swapped = finish(simulation(PUNCH, &sets));
+    let force = swapped.state().contact_forces[0][1];
+    let of_pair = |pair: &Pair| assert!(!pair.active || pair.xi.abs() < 1.2, "{pair:?}");
+    swapped.state().pairs[0].iter().for_each(of_pair);
+    // In four steps it is 11.5666.
+    assert!((force.abs() - 11.5666).abs() < 0.01, "{force}");
+}

@@ -455,3 +455,42 @@ fn a_facet_is_loaded_once() {
     assert_eq!(problems[0].path, "load[0].on[2]");
     assert!(problems[0].what.contains("\"bar.right\" is named twice"), "{}", problems[0].what);
 }
+
+/// The velocity of a support of a lumped bar in uniform motion jumps where a step ends: its impulse
+/// M Δv works at the mean velocity, which the path of the step does not have.
+#[test]
+fn a_velocity_that_jumps_between_steps_works_at_its_mean() {
+    let text = |moved: &str, velocity: f64, scheme: &str| {
+        format!(
+            r#"
+            dimension = 1
+            material = [{{ name = "m", law = "linear-elastic", density = 2.0, young = 1.0, poisson = 0.0 }}]
+            support = [{{ name = "end", on = ["bar.left"], move = {{ x = "{moved}" }} }}]
+            time = {{ end = 1.0, step = 0.1, scheme = {scheme} }}
+            [[body]]
+            name = "bar"
+            material = "m"
+            element = "L2"
+            mass = "lumped"
+            velocity = [{velocity}]
+            mesh = {{ shape = "interval", min = 0.0, max = 10.0, cells = 10 }}
+            "#
+        )
+    };
+    // One of ten cells, half of whose mass is that of the node.
+    let change = 0.5 * 1.0 * 0.2 * 0.2;
+    for scheme in [
+        r#"{ kind = "backward-euler" }"#,
+        r#"{ kind = "newmark", rho_inf = 1.0 }"#,
+        r#"{ kind = "bathe", rho_inf = 0.5 }"#,
+    ] {
+        for (moved, velocity, work) in
+            [("if(t < 1, 0.2*t, 0.2)", 0.2, -change), ("if(t < 1, 0, 0.2*(t - 1))", 0.0, change)]
+        {
+            let sim = finish(simulation(&text(moved, velocity, scheme)));
+            let ledger = &sim.state().ledger;
+            assert!((ledger.external_work - work).abs() < 1e-12, "{scheme}: {ledger:?}");
+            assert!(ledger.dissipation().abs() < 1e-12, "{scheme}: {ledger:?}");
+        }
+    }
+}

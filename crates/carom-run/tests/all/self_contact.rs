@@ -339,3 +339,58 @@ scheme = { kind = "bathe", rho_inf = 0.0 }
     assert!(deepest < 0.02 * 0.12, "{deepest:e}");
     assert!(sim.state().pairs[0].iter().any(|pair| pair.active));
 }
+
+/// A strip wound to a square spiral whose windings do not touch: the inner face of one winding lies
+/// behind the outer face of the next, and overlaps nothing.
+#[test]
+fn the_windings_of_a_spiral_do_not_overlap() {
+    let corners = [
+        [0.0, -0.02],
+        [1.02, -0.02],
+        [1.02, 1.02],
+        [-0.02, 1.02],
+        [-0.02, 0.04],
+        [0.96, 0.04],
+        [0.96, 0.96],
+        [0.04, 0.96],
+        [0.04, 0.1],
+        [0.88, 0.1],
+        [0.88, 0.14],
+        [0.08, 0.14],
+        [0.08, 0.92],
+        [0.92, 0.92],
+        [0.92, 0.08],
+        [0.02, 0.08],
+        [0.02, 0.98],
+        [0.98, 0.98],
+        [0.98, 0.02],
+        [0.0, 0.02],
+    ];
+    let turned: Vec<[f64; 2]> = corners.iter().rev().map(|[x, y]| [-x, *y]).collect();
+    for (points, method) in [
+        (corners.to_vec(), "node-to-segment"),
+        (turned.clone(), "node-to-segment"),
+        (corners.to_vec(), "mortar"),
+        (turned, "mortar"),
+    ] {
+        let text = format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.0 }}]
+            contact = [{{ name = "fold", between = ["strip"], method = "{method}" }}]
+            time = {{ end = 0.1, step = 0.05, scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }} }}
+            [[body]]
+            name = "strip"
+            material = "m"
+            element = "T3"
+            mesh = {{ shape = "polygon", points = {points:?}, size = 0.2 }}
+            velocity = [0.1, 0.0]
+            "#
+        );
+        let case = Case::from_text(&text, &[""; 0]).unwrap();
+        let simulation = advanced(&case, 2);
+        let forces = &simulation.state().f_contact;
+        assert!(forces.iter().all(|force| *force == 0.0), "{method}");
+        assert!((simulation.state().y[0] - points[0][0] - 0.01).abs() < 1e-12);
+    }
+}

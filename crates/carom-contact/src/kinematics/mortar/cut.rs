@@ -16,6 +16,7 @@
 
 use carom_algebra::Vector;
 
+use crate::inside_itself::BEHIND;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
@@ -370,7 +371,7 @@ impl Opposites<'_> {
 
     /// The nearest of the facets over which a point lies, if it is one of the side: walls may stand
     /// behind each other. Behind a facet by more than a facet's length, a point is not inside the
-    /// body there.
+    /// body there, nor behind a facet of the same body where no other part of it covers the point.
     fn nearest<'r>(
         &self,
         own: Facet,
@@ -381,7 +382,11 @@ impl Opposites<'_> {
         let gap = |facet: usize, region: &Region| {
             let Opposed { eta, .. } = self.opposed(own, facet, region, [xi, 0.0])?;
             let gap = self.surface.gap(facet, eta, own.at(self.y, xi).position, self.y);
-            (gap > -region.length.max(own_length)).then_some(gap.abs())
+            let point = own.at(self.y, xi).position;
+            let is_near = gap > -region.length.max(own_length);
+            let is_shallow = self.folds.is_none() || gap >= -BEHIND * region.length;
+            (is_near && (is_shallow || self.surface.covers_point(own.nodes, point, self.y)))
+                .then_some(gap.abs())
         };
         let with_gaps = over.filter_map(|(facet, region)| Some((gap(facet, region)?, facet, region)));
         let (_, facet, region) = with_gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -5,7 +5,7 @@
 //! ```text
 //! they meet across free space        n_node · n_facet < −cos 60°, and the node was not behind
 //! they lie side by side              n_node · n_facet ≥ −cos 60°
-//! they are two faces of one wall     h < 0 close by: never, however thin the wall becomes
+//! they are two faces of one wall     h < 0 close by, and all material on the way: never, however thin the wall becomes
 //! ```
 //!
 //! At a node where several facets meet, the most opposed one counts, and the mean of their normals.
@@ -19,7 +19,7 @@
 //! later smooth part of the boundary, parts being separated by kinks of more than 30°; within a
 //! part that which lies further along a direction in which no symmetry of a usual mesh lies.
 
-use carom_algebra::Vector;
+use carom_algebra::{Mat, Vector};
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::{Boundary, Height, SHARP};
@@ -38,6 +38,8 @@ const BEHIND: f64 = 1e-6;
 /// Cosine of the angle between two outward normals above which they do not belong to the two faces
 /// of a wall.
 const ALIKE: f64 = 0.5;
+/// Round-off in volumes, relative to the largest of them.
+const ROUND_OFF: f64 = 1e-9;
 /// The direction along which the places of a smooth part of a boundary are ordered.
 const ALONG: Vector<3> = Vector([1.0, 0.618, 0.382]);
 
@@ -65,7 +67,8 @@ impl PatchFolds {
         let first = nodes.iter().min().copied().unwrap_or(0);
         let count = nodes.iter().max().map_or(0, |last| last + 1 - first);
         let mut own = vec![Vec::new(); count];
-        for facet in 0..boundary.all() {
+        // A plane of symmetry is no surface.
+        for facet in (0..boundary.all()).filter(|&facet| !boundary.is_mirror(facet)) {
             boundary.nodes_of(facet).iter().for_each(|node| own[node - first].push(facet));
         }
         let parts = smooth_parts(boundary, reference);
@@ -88,6 +91,7 @@ impl PatchFolds {
         let tree = Tree::new(boundary.all(), |facet| boundary.bounds(&hull, facet, reference));
         let mut normals = Vec::new();
         update_normals(boundary, reference, &mut normals);
+        let mut near = Vec::new();
         let of_facet = |own: usize| {
             let point = boundary.middle(own, reference).position;
             let reach = WALL * boundary.patch(own).length(reference);
@@ -102,6 +106,18 @@ impl PatchFolds {
             let mut walls = Vec::new();
             tree.find_into(&Bounds::of(&point.0).grown(reach), &mut walls);
             walls.retain(is_behind);
+            walls.retain(|&facet| {
+                let other = boundary.middle(facet, reference).position;
+                near.clear();
+                tree.find_into(&Bounds::of(&point.0).union(&Bounds::of(&other.0)), &mut near);
+                let enters = |&between: &usize| {
+                    let is_third = between != own && between != facet && !boundary.is_mirror(between);
+                    is_third
+                        && (other - point).dot(&normals[between]) < 0.0
+                        && crosses(boundary, between, [point, other], reference)
+                };
+                !near.iter().any(enters)
+            });
             walls
         };
         (0..boundary.all()).map(of_facet).collect()
@@ -190,7 +206,28 @@ pub fn update_normals(boundary: &Boundary, y: &[f64], normals: &mut Vec<Vector<3
     normals.extend((0..boundary.all()).map(|facet| boundary.middle(facet, y).normal));
 }
 
+/// Whether a segment crosses a facet, taken as the triangles between its corners.
+fn crosses(boundary: &Boundary, facet: usize, [from, to]: [Vector<3>; 2], y: &[f64]) -> bool {
+    let nodes = boundary.nodes_of(facet);
+    let corners = &nodes[..boundary.shape().corners()];
+    let volume = |a: Vector<3>, b: Vector<3>, c: Vector<3>, d: Vector<3>| {
+        let [a, b, c] = [b - a, c - a, d - a];
+        Mat([a.0, b.0, c.0]).det()
+    };
+    (2..corners.len()).any(|k| {
+        let [a, b, c] = [corners[0], corners[k - 1], corners[k]].map(|node| place(y, node));
+        if volume(a, b, c, from) * volume(a, b, c, to) >= 0.0 {
+            return false;
+        }
+        let around = [volume(from, to, a, b), volume(from, to, b, c), volume(from, to, c, a)];
+        // A segment through an edge crosses both facets.
+        let least = ROUND_OFF * around.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+        around.iter().all(|part| *part >= -least) || around.iter().all(|part| *part <= least)
+    })
+}
+
 /// Smooth part of the boundary to which each facet belongs, named by the first facet of that part.
+/// A plane of symmetry is a part of its own: the flanks of a slit that ends there are two.
 fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
     let mut part = vec![usize::MAX; boundary.all()];
     let mut next = Vec::new();
@@ -203,7 +240,8 @@ fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
             for edge in 0..boundary.shape().corners() {
                 let Some(other) = boundary.across(facet, edge) else { continue };
                 let [here, there] = boundary.normals_at_edge(facet, edge, 0.5, reference);
-                if part[other] == usize::MAX && here.dot(&there) > SHARP {
+                let goes_on = boundary.is_mirror(facet) == boundary.is_mirror(other);
+                if part[other] == usize::MAX && goes_on && here.dot(&there) > SHARP {
                     part[other] = begin;
                     next.push(other);
                 }

@@ -28,3 +28,13 @@ fn few_points() {
     assert_eq!(hertz(&[], &[]), None);
     assert_eq!(hertz(&[0.0, 1.0], &[1.0, 1.0]), None);
 }
+
+/// A flat punch has its peaks at the edges, in half a model at one end. That is no ellipse.
+#[test]
+fn a_flat_punch_has_no_ellipse() {
+    let places = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2];
+    let half = [1.775, 1.775, 1.774, 1.773, 1.774, 1.783, 1.801, 1.824, 1.853, 1.898, 1.985, 2.236, 3.036];
+    assert_eq!(hertz(&places, &half), None);
+    let reversed: Vec<f64> = half.into_iter().rev().collect();
+    assert_eq!(hertz(&places, &reversed), None);
+}

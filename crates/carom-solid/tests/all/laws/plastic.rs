@@ -351,7 +351,7 @@ fn four_points_at_once_are_single_points() {
             let elastic = Material::<D>::after(&strong, h, &past).unwrap();
             let change = law.change(&point, &df);
             let near = |a: Mat<D>, b: Mat<D>| {
-                assert!((a - b).double_dot(&(a - b)).sqrt() < 1e-13, "{a:?} against {b:?}")
+                assert!((a - b).double_dot(&(a - b)).sqrt() < 1e-13, "{a:?} against {b:?}");
             };
             near(lane(&along.change), change);
             near(lane(&along.released_stress), Material::<D>::stress(&strong, &elastic) - stress);

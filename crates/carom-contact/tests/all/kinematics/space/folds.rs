@@ -103,3 +103,18 @@ fn of_two_places_that_meet_one_is_the_later() {
     assert!(later(6, 4) && later(6, 3) && later(7, 3));
     assert!(!later(4, 5) && !later(4, 6) && !later(3, 6));
 }
+
+/// In a block with a deep slot the flanks bound walls; its outer sides bound none with each other:
+/// between them lies free space.
+#[test]
+fn what_lies_beyond_a_slot_is_no_face_of_a_wall() {
+    let polygon =
+        [[-2.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.3, 2.0], [0.3, 0.2], [-0.3, 0.2], [-0.3, 2.0], [-2.0, 2.0]];
+    let (boundary, y) = prism(&polygon, &[[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 7]]);
+    let folds = PatchFolds::new(&boundary, &[0; 16], 0, &y);
+    let admits =
+        |node, facet| [Side::Later, Side::Earlier].iter().any(|&side| folds.admits(side, node, facet));
+    // The right side and the right flank, then the two outer sides.
+    assert!(!admits(2, 3) && !admits(1, 3));
+    assert!(admits(2, 7) && admits(7, 1));
+}
