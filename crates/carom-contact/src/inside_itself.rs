@@ -16,10 +16,6 @@ use crate::skin::{CHORDS, Skin};
 /// inside a fold.
 const SHARPEST: f64 = PI / 6.0;
 
-/// Depth behind a facet over its length from which on the angle tells a point inside the body from
-/// one behind other parts of it; chords do not tell smaller ones.
-pub(crate) const BEHIND: f64 = 0.01;
-
 /// A node of a boundary that lies inside its own body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InsideItself {

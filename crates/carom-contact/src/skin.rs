@@ -7,7 +7,6 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
 use crate::depth::NearestOnFacet;
-use crate::inside_itself::BEHIND;
 use crate::kinematics::{Depth, Facets, Folds, Side, Surface, Turns, amplification};
 use crate::places::Places;
 
@@ -139,6 +138,11 @@ impl Skin {
 
 /// Number of chords by which a curved facet is approximated.
 pub(crate) const CHORDS: usize = 4;
+
+/// Depth behind a facet over its length from which on the angle under which a point sees the
+/// boundary tells one inside the body from one behind other parts of it; chords do not tell smaller
+/// ones.
+pub(crate) const BEHIND: f64 = 0.01;
 
 /// Whether two segments cross, their ends not included.
 fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {

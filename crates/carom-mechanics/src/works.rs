@@ -213,9 +213,10 @@ fn turned_friction(last: &Evaluation, next: &State) -> Vec<f64> {
     turned
 }
 
-/// Work of the impulse M J of supports, less what is booked of it along the path of prescribed dofs:
-/// J = Δv − Δt (a_s + a_{s+1})/2 is the change of prescribed velocities beyond their acceleration,
-/// which the balance averages like forces. The balance of their neighbours lacks its inertia.
+/// Work of the impulse M J of supports, less what is booked of it along the path of prescribed
+/// dofs: J = Δv − Δt (a_s + a_{s+1})/2 is the change of prescribed velocities beyond their
+/// acceleration, which the balance averages like forces. The balance of their neighbours lacks its
+/// inertia.
 fn work_of_jumps(equations: &Equations, next: &State, increment: &[f64], dt: f64) -> f64 {
     let Equations { model, state, .. } = equations;
     let mut jump = vec![0.0; increment.len()];

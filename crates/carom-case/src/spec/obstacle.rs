@@ -326,6 +326,17 @@ pub enum PrimarySpec {
 }
 
 impl PrimarySpec {
+    /// Largest distance that is subtracted from another one to find a gap: what decides about its
+    /// round-off, beside positions.
+    pub fn reach(&self) -> f64 {
+        let largest = |point: &[f64]| point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        match self {
+            Self::Circle { center, radius, .. } => radius + largest(center),
+            Self::Cylinder { point, radius, .. } => radius + largest(point),
+            _ => 0.0,
+        }
+    }
+
     /// The side of a body; none of a rigid obstacle.
     pub fn side(&self) -> Option<&str> {
         if let Self::Side(side) = self { Some(side) } else { None }

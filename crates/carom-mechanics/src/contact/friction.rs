@@ -139,7 +139,7 @@ impl Equations<'_> {
 
     /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in
     /// it; the pair keeps the tangents there, and sticks without traction where supports hold both
-    /// sides. `gap`: that of the pair.
+    /// sides and have not dragged it. `gap`: that of the pair.
     pub(crate) fn slip_into(
         &self,
         contact: usize,
@@ -156,7 +156,9 @@ impl Equations<'_> {
         let y = at.end.as_deref().unwrap_or(middle);
         kinematics.slip(&at.pair, y, increment, slips)?;
         pair.tangential.tangents = slips.tangents(first);
-        if may_be_held(self.model, slips, first) {
+        let before = self.state.closed(contact, pair.node);
+        let was_dragged = before.is_some_and(|pair| pair.tangential.traction != [0.0; 2]);
+        if !was_dragged && may_be_held(self.model, slips, first) {
             let mut gaps = Rows::new(self.model.dimension);
             kinematics.measure(&mut at.pair.clone(), y, &mut gaps)?;
             if hold(self.model, gaps.row(0), slips, first, increment) == 0 {

@@ -1,7 +1,7 @@
 //! Directions of a tangent plane in which friction acts. Where supports fix both sides along a
 //! tangent, as in a plane of symmetry, no slip is possible, and any traction within the cone would
 //! be in balance with their reactions. It is zero: in a plane of symmetry the traction of one half
-//! is that of the other, reflected.
+//! is that of the other, reflected. A pair that was dragged before keeps the traction that it has.
 
 use carom_algebra::sums::{dot, max_abs};
 use carom_contact::{Along, Row, Rows};
@@ -10,25 +10,15 @@ use crate::contact::independent::HELD;
 use crate::model::Model;
 use crate::velocity::cone::AT_REST;
 
-/// Whether supports that never move fix dofs of a slip, whose rows are those from `first` on, and
-/// no others do.
+/// Whether supports fix dofs of a slip, whose rows are those from `first` on.
 pub(crate) fn may_be_held(model: &Model, slips: &Rows, first: usize) -> bool {
-    let mut is_fixed = false;
-    for row in first..slips.len() {
-        for (dof, slope) in slips.row(row).entries() {
-            if slope != 0.0 && model.fixed[dof] {
-                if model.motions.moves(dof) {
-                    return false;
-                }
-                is_fixed = true;
-            }
-        }
-    }
-    is_fixed
+    let is_fixed = |(dof, slope): (usize, f64)| slope != 0.0 && model.fixed[dof];
+    (first..slips.len()).any(|row| slips.row(row).entries().any(is_fixed))
 }
 
-/// Clears the rows of a slip, from `first` on, in the directions in which supports fix both sides of
-/// the pair; returns in how many it can slip. `gap`: the row of its gap, `increment`: the motion.
+/// Clears the rows of a slip, from `first` on, in the directions in which supports fix both sides
+/// of the pair; returns in how many it can slip. `gap`: the row of its gap; `increment`: the
+/// motion.
 pub(crate) fn hold(model: &Model, gap: Row, slips: &mut Rows, first: usize, increment: &[f64]) -> usize {
     let mut own = Rows::new(model.dimension);
     (first..slips.len()).for_each(|row| own.push_row(slips.row(row)));

@@ -83,11 +83,6 @@ impl Motions {
         self.moved.iter().map(|m| m.dof)
     }
 
-    /// Whether a dof is prescribed.
-    pub fn moves(&self, dof: usize) -> bool {
-        self.moved.binary_search_by_key(&dof, |moved| moved.dof).is_ok()
-    }
-
     /// Displacements, velocities and accelerations at a time; `out` is reused.
     ///
     /// # Errors

@@ -98,10 +98,10 @@ const BLOCK: usize = 4096;
 /// Gap, as a fraction of L, that counts as closed.
 const GAP_TOLERANCE: f64 = 1e-12;
 
-/// Gap that counts as closed, for bodies of size L at `positions`: a fraction of L, and what
-/// round-off of positions makes of none.
-pub fn gap_tolerance(scale: f64, positions: &[f64]) -> f64 {
-    let furthest = positions.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+/// Gap that counts as closed, for bodies of size L and these coordinates and radii of obstacles: a
+/// fraction of L, and what their round-off makes of none.
+pub fn gap_tolerance(scale: f64, coordinates: impl Iterator<Item = f64>) -> f64 {
+    let furthest = coordinates.fold(0.0_f64, |most, x| most.max(x.abs()));
     GAP_TOLERANCE * scale + 4.0 * f64::EPSILON * furthest
 }
 

@@ -89,7 +89,7 @@ pub(crate) fn model(
     let scale = parts.iter().map(|part| part.body.mesh().diameter()).fold(0.0, f64::max);
     Model {
         dimension,
-        gap_tolerance: gap_tolerance(scale, &reference),
+        gap_tolerance: gap_tolerance(scale, reference.iter().copied()),
         initial_position: reference.clone(),
         initial_velocity: vec![0.0; dofs],
         fixed: constrained,

@@ -110,7 +110,10 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
             dimension: d,
             parts,
             reference,
-            gap_tolerance: gap_tolerance(scale, &initial_position),
+            gap_tolerance: gap_tolerance(
+                scale,
+                initial_position.iter().copied().chain(case.contacts.iter().map(|of| of.primary.reach())),
+            ),
             initial_position,
             initial_velocity,
             fixed,

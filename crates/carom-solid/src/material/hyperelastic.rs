@@ -52,8 +52,9 @@ impl<const D: usize> Along<D> {
 
 /// A hyperelastic law. [`Material::after`] computes common terms once. `after`, `energy`, `stress`
 /// and `tangent` are `#[inline(always)]`: they are compiled into the loop over quadrature points,
-/// for wide registers. A law whose formulas are written for any number ([`Real`](carom_algebra::Real))
-/// evaluates four points at once: it replaces `four`, `four_along` and `moduli`.
+/// for wide registers. A law whose formulas are written for any number
+/// ([`Real`](carom_algebra::Real)) evaluates four points at once: it replaces `four`, `four_along`
+/// and `moduli`.
 ///
 /// A law with memory has, for the memory at the start of a step and the length of the step, an
 /// incremental potential ΔW(F) = Ψ + 𝒟 of the stored energy Ψ and the energy 𝒟 that is dissipated

@@ -16,12 +16,12 @@
 
 use carom_algebra::Vector;
 
-use crate::inside_itself::BEHIND;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
 use crate::kinematics::surface::Surface;
 use crate::places::Places;
+use crate::skin::BEHIND;
 
 /// Points at which weighted gaps of mortar contact are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

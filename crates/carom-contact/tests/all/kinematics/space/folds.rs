@@ -112,9 +112,10 @@ fn what_lies_beyond_a_slot_is_no_face_of_a_wall() {
         [[-2.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.3, 2.0], [0.3, 0.2], [-0.3, 0.2], [-0.3, 2.0], [-2.0, 2.0]];
     let (boundary, y) = prism(&polygon, &[[0, 1, 2, 3], [0, 3, 4, 5], [0, 5, 6, 7]]);
     let folds = PatchFolds::new(&boundary, &[0; 16], 0, &y);
-    let admits =
-        |node, facet| [Side::Later, Side::Earlier].iter().any(|&side| folds.admits(side, node, facet));
+    let mut normals = Vec::new();
+    update_normals(&boundary, &y, &mut normals);
+    let may_meet = |node: usize, facet: usize| folds.met(node, facet, |facet| normals[facet]).is_some();
     // The right side and the right flank, then the two outer sides.
-    assert!(!admits(2, 3) && !admits(1, 3));
-    assert!(admits(2, 7) && admits(7, 1));
+    assert!(!may_meet(2, 3) && !may_meet(1, 3));
+    assert!(may_meet(2, 7) && may_meet(7, 1));
 }
