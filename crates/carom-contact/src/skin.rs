@@ -96,7 +96,7 @@ impl Skin {
         let (facet, _) = nearest?;
         let found = self.surface.depth(facet, point, y);
         // Behind a winding of a spiral, or another part, a node is not inside that facet.
-        let is_behind = -found.distance > BEHIND * self.surface.length(facet, places);
+        let is_behind = -found.distance > TOLD_BY_ANGLE * self.surface.length(facet, places);
         if is_behind && !self.surface.covers(node, places) {
             return Some(Depth { distance: -found.distance, ..found });
         }
@@ -139,10 +139,9 @@ impl Skin {
 /// Number of chords by which a curved facet is approximated.
 pub(crate) const CHORDS: usize = 4;
 
-/// Depth behind a facet over its length from which on the angle under which a point sees the
-/// boundary tells one inside the body from one behind other parts of it; chords do not tell smaller
-/// ones.
-pub(crate) const BEHIND: f64 = 0.01;
+/// Depth behind a facet, relative to its length, from which on the angle under which a point sees
+/// the boundary is asked whether it is inside the body. Chords are too coarse for smaller ones.
+pub(crate) const TOLD_BY_ANGLE: f64 = 0.01;
 
 /// Whether two segments cross, their ends not included.
 fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {

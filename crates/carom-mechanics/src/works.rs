@@ -3,7 +3,7 @@
 //! ```text
 //! of both ends     F̄ = (F_s + F_{s+1})/2                              α family, load steps
 //! of means         F̄ = the mean of the velocity update, `Stage::mean`     all others
-//! external         Δy·F̄_ext (beyond the potential) + Δy_moved·R̄
+//! external         Δy·F̄_ext (beyond the potential) + Δy_moved·R̄ + (v_s + v_{s+1})/2·M J
 //! contact          Δy·F̄_cont
 //! ```
 //!
@@ -27,7 +27,8 @@
 //!
 //! In the trapezoidal and the midpoint rule Δy is Δt (v_s + v⁻)/2, and nothing changes. With
 //! another path the time integrator would seem to take a part of the impact, which does not vanish
-//! with the step. Supports and obstacles have Δy as their path.
+//! with the step. Supports and obstacles have Δy as their path, but for the impulses of velocities
+//! that jump.
 //!
 //! R̄ is the reaction of prescribed dofs. Of both ends it is M Δv/Δt plus the mean of the other
 //! forces: accelerations of the α family are of first order. Of means it is the mean residual of
@@ -215,8 +216,8 @@ fn turned_friction(last: &Evaluation, next: &State) -> Vec<f64> {
 
 /// Work of the impulse M J of supports, less what is booked of it along the path of prescribed
 /// dofs: J = Δv − Δt (a_s + a_{s+1})/2 is the change of prescribed velocities beyond their
-/// acceleration, which the balance averages like forces. The balance of their neighbours lacks its
-/// inertia.
+/// acceleration, which the balance averages like forces. Through M it acts on their neighbours,
+/// too.
 fn work_of_jumps(equations: &Equations, next: &State, increment: &[f64], dt: f64) -> f64 {
     let Equations { model, state, .. } = equations;
     let mut jump = vec![0.0; increment.len()];

@@ -326,14 +326,16 @@ pub enum PrimarySpec {
 }
 
 impl PrimarySpec {
-    /// Largest distance that is subtracted from another one to find a gap: what decides about its
-    /// round-off, beside positions.
-    pub fn reach(&self) -> f64 {
+    /// Largest coordinate or radius in the formula of its gap, which decides about round-off; zero
+    /// where that is made of positions of nodes, or of a file.
+    pub fn largest_coordinate(&self) -> f64 {
         let largest = |point: &[f64]| point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         match self {
-            Self::Circle { center, radius, .. } => radius + largest(center),
-            Self::Cylinder { point, radius, .. } => radius + largest(point),
-            _ => 0.0,
+            Self::Side(_) | Self::Surface(_) => 0.0,
+            Self::Plane { point, .. } => largest(point),
+            Self::Circle { center, radius, .. } => radius.max(largest(center)),
+            Self::Cylinder { point, radius, .. } => radius.max(largest(point)),
+            Self::Polyline { points, radius } => radius.max(largest(points.as_flattened())),
         }
     }
 

@@ -39,7 +39,7 @@ use carom_contact::{
     Along, ContactError, FrictionPair, FrictionState, Law, Pair, Radius, Row, Rows, Tangential, inner, length,
 };
 
-use crate::contact::loose::{hold, may_be_held};
+use crate::contact::loose::hold;
 use crate::model::{Contact, Model, NoValue};
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
@@ -156,15 +156,17 @@ impl Equations<'_> {
         let y = at.end.as_deref().unwrap_or(middle);
         kinematics.slip(&at.pair, y, increment, slips)?;
         pair.tangential.tangents = slips.tangents(first);
-        let before = self.state.closed(contact, pair.node);
-        let was_dragged = before.is_some_and(|pair| pair.tangential.traction != [0.0; 2]);
-        if !was_dragged && may_be_held(self.model, slips, first) {
-            let mut gaps = Rows::new(self.model.dimension);
+        let node = self.model.contacts[contact].node(pair);
+        let d = self.model.dimension;
+        if (d * node..d * (node + 1)).any(|dof| self.model.fixed[dof]) {
+            let mut gaps = Rows::new(d);
             kinematics.measure(&mut at.pair.clone(), y, &mut gaps)?;
-            if hold(self.model, gaps.row(0), slips, first, increment) == 0 {
-                let tangential = &mut pair.tangential;
-                tangential.friction_state = FrictionState::Stick;
-                (tangential.traction, tangential.before) = ([0.0; 2], [0.0; 2]);
+            let start = self.state.closed(contact, pair.node);
+            let before = start.map_or([0.0; 2], |pair| pair.tangential.traction);
+            if hold(self.model, gaps.row(0), slips, first, increment, before) == 0 {
+                pair.tangential.friction_state = FrictionState::Stick;
+                pair.tangential.traction = [0.0; 2];
+                pair.tangential.before = [0.0; 2];
             }
         }
         for row in first..slips.len() {

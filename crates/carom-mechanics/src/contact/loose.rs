@@ -1,41 +1,49 @@
 //! Directions of a tangent plane in which friction acts. Where supports fix both sides along a
 //! tangent, as in a plane of symmetry, no slip is possible, and any traction within the cone would
 //! be in balance with their reactions. It is zero: in a plane of symmetry the traction of one half
-//! is that of the other, reflected. A pair that was dragged before keeps the traction that it has.
+//! is that of the other, reflected. What supports or obstacles have dragged before keeps the
+//! traction that it has.
 
 use carom_algebra::sums::{dot, max_abs};
-use carom_contact::{Along, Row, Rows};
+use carom_contact::{Along, Row, Rows, inner, length};
 
 use crate::contact::independent::HELD;
 use crate::model::Model;
 use crate::velocity::cone::AT_REST;
 
-/// Whether supports fix dofs of a slip, whose rows are those from `first` on.
-pub(crate) fn may_be_held(model: &Model, slips: &Rows, first: usize) -> bool {
-    let is_fixed = |(dof, slope): (usize, f64)| slope != 0.0 && model.fixed[dof];
-    (first..slips.len()).any(|row| slips.row(row).entries().any(is_fixed))
-}
+/// Part of a traction, relative to it, that is none.
+const NONE: f64 = 1e-6;
 
 /// Clears the rows of a slip, from `first` on, in the directions in which supports fix both sides
-/// of the pair; returns in how many it can slip. `gap`: the row of its gap; `increment`: the
-/// motion.
-pub(crate) fn hold(model: &Model, gap: Row, slips: &mut Rows, first: usize, increment: &[f64]) -> usize {
+/// of the pair, and in which it had no traction `before` the step; returns in how many it can slip.
+/// `gap`: the row of its gap; `increment`: the motion.
+pub(crate) fn hold(
+    model: &Model,
+    gap: Row,
+    slips: &mut Rows,
+    first: usize,
+    increment: &[f64],
+    before: Along,
+) -> usize {
     let mut own = Rows::new(model.dimension);
     (first..slips.len()).for_each(|row| own.push_row(slips.row(row)));
     let directions: Vec<Along> = loose(model, gap, &own, increment).collect();
     match directions[..] {
-        [] => (first..slips.len()).for_each(|row| slips.gradient_mut(row).fill(0.0)),
-        [along] if own.len() == 2 => {
+        [] if before == [0.0; 2] => {
+            (first..slips.len()).for_each(|row| slips.gradient_mut(row).fill(0.0));
+            0
+        }
+        [along] if own.len() == 2 && inner([-along[1], along[0]], before).abs() <= NONE * length(before) => {
             let mut kept = Rows::new(model.dimension);
             kept.push_combined(&own, 0, &along);
             for (i, part) in along.iter().enumerate() {
                 let row = slips.gradient_mut(first + i);
                 row.iter_mut().zip(kept.row(0).gradient).for_each(|(slope, h)| *slope = part * h);
             }
+            1
         }
-        _ => {}
+        _ => own.len(),
     }
-    directions.len()
 }
 
 /// The components along its tangents of the slips of a pair on which its friction acts. Supports

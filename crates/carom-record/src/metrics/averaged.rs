@@ -8,7 +8,7 @@
 use super::definition::Metric;
 use super::episode::first_episode;
 use super::evaluated::{of_columns, of_history, probe_columns};
-use super::given::Given;
+use super::given::{Given, is_of_itself};
 use super::samples::{at, integral};
 use crate::{History, Run};
 
@@ -30,7 +30,9 @@ pub fn of_averages(run: &Run) -> Vec<Metric> {
     };
     let averaged = averaged(history, window, |name| is_force(name) || probes.contains(&name));
     let mut metrics: Vec<Metric> = of_history(&Given::of_changed(run, &averaged)).collect();
-    metrics.retain(|metric| OF_FORCE.contains(&metric.name.as_ref()));
+    // The normal forces of a side with itself are in no column.
+    let is_averaged = !contacts.iter().any(is_of_itself);
+    metrics.retain(|metric| is_averaged && OF_FORCE.contains(&metric.name.as_ref()));
     for column in probes {
         let of_rows = |name: &str| OF_COLUMN.iter().any(|what| name.ends_with(&format!(":{what}")));
         metrics.extend(of_columns(&averaged, column).into_iter().filter(|metric| of_rows(&metric.name)));

@@ -144,7 +144,7 @@ pub(crate) fn count_as_one(contacts: &[ContactFacts]) -> bool {
 }
 
 /// Whether a side is in contact with itself.
-fn is_of_itself(of: &ContactFacts) -> bool {
+pub(super) fn is_of_itself(of: &ContactFacts) -> bool {
     of.primary.as_deref() == Some(&of.secondary)
 }
 
@@ -174,13 +174,12 @@ fn of_contacts<'a>(
 
 /// Magnitude of the contact force in every row, of contacts that do not count as one the largest.
 fn force(history: &History, contacts: &[ContactFacts], run: Option<&Run>) -> Vec<f64> {
-    let is_one = count_as_one(contacts);
-    if let (true, [of], Some(run)) = (is_one, contacts, run)
+    if let ([of], Some(run)) = (contacts, run)
         && is_of_itself(of)
     {
         return pressing(run, history, &of.name);
     }
-    if is_one {
+    if count_as_one(contacts) {
         return total_force(history);
     }
     let larger = |one: Vec<f64>, other: Vec<f64>| one.iter().zip(&other).map(|(a, b)| a.max(*b)).collect();

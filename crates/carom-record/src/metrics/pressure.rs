@@ -53,14 +53,14 @@ pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let count = places.len() as f64;
     let mean = pressures.iter().map(|p| (p / size).powi(2)).sum::<f64>() / count;
     let mut variance = 0.0;
-    let mut left = 0.0;
+    let mut unexplained = 0.0;
     for (s, p) in places.iter().zip(pressures) {
         let [one, x, xx] = powers(*s);
         let square = (p / size).powi(2);
         variance += (square - mean).powi(2);
-        left += (square - (a * one + b * x + c * xx)).powi(2);
+        unexplained += (square - (a * one + b * x + c * xx)).powi(2);
     }
-    if left > 0.5 * variance {
+    if unexplained > 0.5 * variance {
         return None;
     }
     // a + bx + cx² = peak + c(x − x₀)²

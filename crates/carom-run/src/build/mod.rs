@@ -105,15 +105,13 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
         tie.supported = released.iter().copied().filter(|dof| nodes.contains(&(dof / d))).collect();
     }
     let [free, unknown] = Model::unknowns(&fixed, d, &ties.points);
+    let of_obstacles = case.contacts.iter().map(|contact| contact.primary.largest_coordinate());
     if problems.is_empty() {
         Ok(Model {
             dimension: d,
             parts,
             reference,
-            gap_tolerance: gap_tolerance(
-                scale,
-                initial_position.iter().copied().chain(case.contacts.iter().map(|of| of.primary.reach())),
-            ),
+            gap_tolerance: gap_tolerance(scale, initial_position.iter().copied().chain(of_obstacles)),
             initial_position,
             initial_velocity,
             fixed,

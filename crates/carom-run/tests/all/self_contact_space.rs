@@ -179,3 +179,21 @@ fn a_run_that_is_continued_from_its_state_is_the_same_with_other_threads() {
     }
     continues_with_the_same_bits(&case, whole, 4);
 }
+
+/// A bar with a closed slit between planes of symmetry, in which its flanks end: with ν = 0 these
+/// change nothing, and the flanks do not overlap while the pulse passes.
+#[test]
+fn a_slit_ends_in_planes_of_symmetry() {
+    let path = Path::new(ROOT).join("slit.toml");
+    let sets =
+        ["support=[{ on = [\"bar.bottom\", \"bar.top\"], fix = [\"z\"] }]", "expect=[]", "time.end=4.0"];
+    let case = Case::from_file(&path, &sets).unwrap();
+    let mut sim = simulation(&case);
+    while !sim.finished() {
+        sim.step().unwrap();
+    }
+    let depths = carom_mechanics::penetration(sim.model(), sim.state());
+    assert!(depths.all < 1e-7, "{depths:?}");
+    let force = sim.state().pairs[0].iter().map(|pair| -pair.lambda).sum::<f64>();
+    assert!(force > 1e-5, "{force}");
+}

@@ -3,7 +3,7 @@
 use carom_algebra::{Four, Mat, Real, Vector};
 
 use super::kinematics::{NotPositive, excess_det};
-use super::past::Past;
+use super::past::{MOST, Past};
 use crate::points::{LANES, Mats, four, get, lanes, set};
 
 /// ∂P/∂F at each of four points: `[J][L][i][j][point]` is ∂P_iJ/∂F_jL.
@@ -29,8 +29,8 @@ impl<const D: usize> AtFour<D> {
     }
 }
 
-/// A law at each of four points, and its change with dF. The last two are those of
-/// [`Material::released`] as a potential, of a law that knows them ([`Material::SPLITS`]).
+/// A law at each of four points, and its change with dF; ∂ψ/∂F, ψ being [`Material::released`], and
+/// its change, which are zero unless the law splits ([`Material::SPLITS`]).
 pub struct Along<const D: usize> {
     /// The law.
     pub at: AtFour<D>,
@@ -76,8 +76,8 @@ pub trait Material<const D: usize>: Send + Sync {
     /// Whether ΔW lacks a second derivative where flow begins within a step.
     const YIELDS: bool = false;
 
-    /// Whether ΔW of a law that yields is a smooth function less [`Material::released`], and
-    /// [`Material::four_along`] gives the stress of that function.
+    /// Whether ΔW of a law that yields is a smooth function less [`Material::released`], and its
+    /// own [`Material::four_along`] gives ∂ψ/∂F and its change, for which there is no default.
     const SPLITS: bool = false;
 
     /// Kinematics at a point.
@@ -89,6 +89,7 @@ pub trait Material<const D: usize>: Send + Sync {
     /// Kinematics at H at the start of a run.
     #[inline(always)]
     fn at(&self, h: &Mat<D>) -> Result<Self::Point, NotPositive> {
+        const { assert!(Self::MEMORY <= MOST, "a point remembers at most 64 numbers") };
         self.after(h, &Past::virgin(Self::MEMORY))
     }
 

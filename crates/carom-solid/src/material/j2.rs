@@ -214,7 +214,7 @@ impl J2 {
 
     /// Energies and stress of points.
     #[inline(always)]
-    fn found<const D: usize>(&self, point: &Point<D, Four>) -> AtFour<D> {
+    fn response<const D: usize>(&self, point: &Point<D, Four>) -> AtFour<D> {
         AtFour {
             stored: point.stored,
             stress: point.of.stress(),
@@ -302,7 +302,7 @@ impl<const D: usize> Material<D> for J2 {
     ) -> Result<AtFour<D>, NotPositive> {
         let point = self.four_points(h, past)?;
         point.write_end(memory);
-        Ok(self.found(&point))
+        Ok(self.response(&point))
     }
 
     #[inline(always)]
@@ -315,7 +315,7 @@ impl<const D: usize> Material<D> for J2 {
     ) -> Result<Along<D>, NotPositive> {
         let point = self.four_points(h, past)?;
         let change = |of: &PrincipalStress<D, Four>| df.map_or(Mat::ZERO, |df| of.change(df));
-        let along = Along::elastic(self.found(&point), change(&point.of));
+        let along = Along::elastic(self.response(&point), change(&point.of));
         if !point.flows() {
             return Ok(along);
         }
@@ -335,7 +335,7 @@ impl<const D: usize> Material<D> for J2 {
         let point = self.four_points(h, past)?;
         point.write_end(memory);
         store_moduli(&point.of, moduli);
-        Ok(self.found(&point))
+        Ok(self.response(&point))
     }
 
     #[inline(always)]

@@ -11,8 +11,11 @@ pub struct Past<'a> {
     pub dt: f64,
 }
 
+/// Most numbers that a point can remember.
+pub(crate) const MOST: usize = 64;
+
 /// Memory of a point at the start of a run.
-const NOTHING: [f64; 64] = [0.0; 64];
+const NOTHING: [f64; MOST] = [0.0; MOST];
 
 impl<'a> Past<'a> {
     /// From the memory at the start of a step and the length of the step.

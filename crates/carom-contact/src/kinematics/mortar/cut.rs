@@ -21,7 +21,7 @@ use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
 use crate::kinematics::surface::Surface;
 use crate::places::Places;
-use crate::skin::BEHIND;
+use crate::skin::TOLD_BY_ANGLE;
 
 /// Points at which weighted gaps of mortar contact are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -371,7 +371,8 @@ impl Opposites<'_> {
 
     /// The nearest of the facets over which a point lies, if it is one of the side: walls may stand
     /// behind each other. Behind a facet by more than a facet's length, a point is not inside the
-    /// body there, nor behind a facet of the same body where no other part of it covers the point.
+    /// body there, nor behind a facet of the same body where no other part of it covers the point,
+    /// which costs a pass over the boundary.
     fn nearest<'r>(
         &self,
         own: Facet,
@@ -381,10 +382,10 @@ impl Opposites<'_> {
         let own_length = (self.y.at(own.nodes[1]) - self.y.at(own.nodes[0])).norm();
         let gap = |facet: usize, region: &Region| {
             let Opposed { eta, .. } = self.opposed(own, facet, region, [xi, 0.0])?;
-            let gap = self.surface.gap(facet, eta, own.at(self.y, xi).position, self.y);
             let point = own.at(self.y, xi).position;
+            let gap = self.surface.gap(facet, eta, point, self.y);
             let is_near = gap > -region.length.max(own_length);
-            let is_shallow = self.folds.is_none() || gap >= -BEHIND * region.length;
+            let is_shallow = self.folds.is_none() || gap >= -TOLD_BY_ANGLE * region.length;
             (is_near && (is_shallow || self.surface.covers_point(own.nodes, point, self.y)))
                 .then_some(gap.abs())
         };

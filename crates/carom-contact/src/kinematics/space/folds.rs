@@ -17,13 +17,17 @@
 //!
 //! The secondary one of two places that meet is that of the later piece; within a piece that of the
 //! later smooth part of the boundary, parts being separated by kinks of more than 30°; within a
-//! part that which lies further along a direction in which no symmetry of a usual mesh lies.
+//! part that of the facet whose middle lies further along a direction of the part: that in which
+//! its normals point most, across the flanks of a fold. Where they point in several directions
+//! alike, as in a tube, all of these count, in shares without a symmetry.
 
-use carom_algebra::{Mat, Vector};
+use std::collections::BTreeMap;
+
+use carom_algebra::{Mat, PrincipalAxes, Vector, principal_axes};
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::{Boundary, Height, SHARP};
-use super::patch::place;
+use super::patch::{PatchPoint, place};
 use crate::kinematics::{Facets, Side};
 
 /// Cosine of the angle between two outward normals, −cos 60°, below which two places face each
@@ -40,8 +44,9 @@ const BEHIND: f64 = 1e-6;
 const ALIKE: f64 = 0.5;
 /// Round-off in volumes, relative to the largest of them.
 const ROUND_OFF: f64 = 1e-9;
-/// The direction along which the places of a smooth part of a boundary are ordered.
-const ALONG: Vector<3> = Vector([1.0, 0.618, 0.382]);
+/// Shares of the principal directions of the normals in the order of a smooth part, the strongest
+/// first, if all are alike.
+const SHARES: [f64; 3] = [1.0, 0.618, 0.382];
 
 /// The order of the places of a boundary, and the faces of its walls, in global node numbers.
 #[derive(Debug)]
@@ -55,8 +60,6 @@ pub struct PatchFolds {
     /// Connected piece and smooth part of each facet, and the coordinate of its middle along the
     /// direction of the order.
     places: Vec<(usize, usize, f64)>,
-    /// Coordinate of each node along the direction of the order.
-    along: Vec<f64>,
 }
 
 impl PatchFolds {
@@ -72,15 +75,15 @@ impl PatchFolds {
             boundary.nodes_of(facet).iter().for_each(|node| own[node - first].push(facet));
         }
         let parts = smooth_parts(boundary, reference);
-        let along = |x: Vector<3>| x.dot(&ALONG);
+        let directions = directions(boundary, &parts, reference);
         let places = |facet: usize| {
             let nodes = boundary.nodes_of(facet);
             let middle = boundary.middle(facet, reference).position;
-            (piece[nodes[0] - first_node], parts[facet], along(middle))
+            let direction = directions.get(&parts[facet]).copied().unwrap_or(Vector::ZERO);
+            (piece[nodes[0] - first_node], parts[facet], middle.dot(&direction))
         };
-        let along = (first..first + count).map(|node| along(place(reference, node))).collect();
         let places = (0..boundary.all()).map(places).collect();
-        let mut folds = Self { first, own, walls: Vec::new(), places, along };
+        let mut folds = Self { first, own, walls: Vec::new(), places };
         folds.walls = folds.walls_of(boundary, reference);
         folds
     }
@@ -133,14 +136,9 @@ impl PatchFolds {
         self.walls[own].binary_search(&facet).is_ok()
     }
 
-    /// Side in the order of places on which a node of the facet `own` is when it meets another
-    /// facet.
-    fn side(&self, node: usize, own: usize, facet: usize) -> Side {
-        let here = self.places[own];
-        let there = self.places[facet];
-        let order = (here.0, here.1).cmp(&(there.0, there.1));
-        let later = order.then(self.along[node - self.first].total_cmp(&there.2)).is_ge();
-        if later { Side::Later } else { Side::Earlier }
+    /// Side in the order of places on which the facet `own` is when it meets another one.
+    fn side(&self, own: usize, facet: usize) -> Side {
+        if self.is_later(own, facet) { Side::Later } else { Side::Earlier }
     }
 
     /// Whether a node and a facet may form a pair in which the node is on the given side, as far as
@@ -148,7 +146,7 @@ impl PatchFolds {
     pub fn admits(&self, side: Side, node: usize, facet: usize) -> bool {
         let own = self.own(node);
         own.binary_search(&facet).is_err()
-            && own.iter().any(|&own| self.side(node, own, facet) == side && !self.is_behind(own, facet))
+            && own.iter().any(|&own| self.side(own, facet) == side && !self.is_behind(own, facet))
     }
 
     /// Side in the order of places on which a node is that may meet a facet, at positions with the
@@ -161,7 +159,7 @@ impl PatchFolds {
             return None;
         }
         if self.are_of_different_pieces(one, facet) {
-            return Some(self.side(node, one, facet));
+            return Some(self.side(one, facet));
         }
         let mut most = (one, f64::INFINITY);
         let mut mean = Vector::ZERO;
@@ -174,7 +172,7 @@ impl PatchFolds {
             }
         }
         let opposed = most.1 < OPPOSED || mean.dot(&there) < OPPOSED * mean.norm();
-        (opposed && !self.is_behind(most.0, facet)).then(|| self.side(node, most.0, facet))
+        (opposed && !self.is_behind(most.0, facet)).then(|| self.side(most.0, facet))
     }
 
     /// Whether two facets bound different connected pieces of the body.
@@ -196,7 +194,8 @@ impl PatchFolds {
     pub(super) fn is_later(&self, facet: usize, other: usize) -> bool {
         let here = self.places[facet];
         let there = self.places[other];
-        (here.0, here.1).cmp(&(there.0, there.1)).then(here.2.total_cmp(&there.2)).is_gt()
+        let order = (here.0, here.1).cmp(&(there.0, there.1)).then(here.2.total_cmp(&there.2));
+        order.then(facet.cmp(&other)).is_gt()
     }
 }
 
@@ -210,10 +209,8 @@ pub fn update_normals(boundary: &Boundary, y: &[f64], normals: &mut Vec<Vector<3
 fn crosses(boundary: &Boundary, facet: usize, [from, to]: [Vector<3>; 2], y: &[f64]) -> bool {
     let nodes = boundary.nodes_of(facet);
     let corners = &nodes[..boundary.shape().corners()];
-    let volume = |a: Vector<3>, b: Vector<3>, c: Vector<3>, d: Vector<3>| {
-        let [a, b, c] = [b - a, c - a, d - a];
-        Mat([a.0, b.0, c.0]).det()
-    };
+    let volume =
+        |a: Vector<3>, b: Vector<3>, c: Vector<3>, d: Vector<3>| Mat([(b - a).0, (c - a).0, (d - a).0]).det();
     (2..corners.len()).any(|k| {
         let [a, b, c] = [corners[0], corners[k - 1], corners[k]].map(|node| place(y, node));
         if volume(a, b, c, from) * volume(a, b, c, to) >= 0.0 {
@@ -224,6 +221,29 @@ fn crosses(boundary: &Boundary, facet: usize, [from, to]: [Vector<3>; 2], y: &[f
         let least = ROUND_OFF * around.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
         around.iter().all(|part| *part >= -least) || around.iter().all(|part| *part <= least)
     })
+}
+
+/// The direction along which each smooth part is ordered. It turns with the body.
+fn directions(boundary: &Boundary, parts: &[usize], reference: &[f64]) -> BTreeMap<usize, Vector<3>> {
+    let mut normals: BTreeMap<usize, Mat<3>> = BTreeMap::new();
+    for (facet, part) in parts.iter().enumerate() {
+        let PatchPoint { normal, tangents: [a, b], .. } = boundary.middle(facet, reference);
+        let area = Mat([normal.0, a.0, b.0]).det().abs();
+        *normals.entry(*part).or_insert(Mat::ZERO) += normal.outer(&normal) * area;
+    }
+    let direction = |(part, sum): (usize, Mat<3>)| {
+        let PrincipalAxes { values, axes } = principal_axes(&sum);
+        let mut order = [0, 1, 2];
+        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+        let mut along = Vector::ZERO;
+        for (share, &axis) in SHARES.iter().zip(&order) {
+            let strength = values[axis] / values[order[0]];
+            let axis = Vector(axes.transposed().0[axis]);
+            along += axis * (share * strength * strength);
+        }
+        (part, along)
+    };
+    normals.into_iter().map(direction).collect()
 }
 
 /// Smooth part of the boundary to which each facet belongs, named by the first facet of that part.
