@@ -95,11 +95,10 @@ fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2
 /// Adds a step of this size to what pairs with friction did.
 pub(crate) fn book_states(model: &Model, state: &mut State, dt: f64) {
     let rubbed = &mut state.ledger.rubbed;
-    let rubs = model.contacts.iter().zip(&state.pairs).filter(|(contact, _)| contact.friction.is_some());
-    // Edges have none.
-    let nodes =
-        rubs.flat_map(|(contact, pairs)| pairs.iter().filter(|p| p.node < contact.kinematics.rubbing()));
-    for pair in nodes.filter(|pair| pair.active) {
+    let contacts = model.contacts.iter().zip(&state.pairs);
+    let nodes = contacts.filter_map(|(contact, pairs)| Some((contact.friction.as_ref()?, pairs)));
+    let rubs = nodes.flat_map(|(friction, pairs)| pairs.iter().filter(|pair| friction.acts_on(pair.node)));
+    for pair in rubs.filter(|pair| pair.active) {
         rubbed.contact_time += dt;
         rubbed.stick_time += if pair.tangential.friction_state == FrictionState::Stick { dt } else { 0.0 };
         rubbed.farthest = rubbed.farthest.max(length(pair.tangential.slip));

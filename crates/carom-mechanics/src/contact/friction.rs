@@ -39,7 +39,7 @@ use carom_contact::{
     Along, ContactError, FrictionPair, FrictionState, Law, Pair, Radius, Row, Rows, Tangential, inner, length,
 };
 
-use crate::contact::loose::hold;
+use crate::contact::loose::{hold, may_be_held};
 use crate::model::{Contact, Model, NoValue};
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
@@ -156,10 +156,8 @@ impl Equations<'_> {
         let y = at.end.as_deref().unwrap_or(middle);
         kinematics.slip(&at.pair, y, increment, slips)?;
         pair.tangential.tangents = slips.tangents(first);
-        let node = self.model.contacts[contact].node(pair);
-        let d = self.model.dimension;
-        if (d * node..d * (node + 1)).any(|dof| self.model.fixed[dof]) {
-            let mut gaps = Rows::new(d);
+        if may_be_held(self.model, self.model.contacts[contact].node(pair)) {
+            let mut gaps = Rows::new(self.model.dimension);
             kinematics.measure(&mut at.pair.clone(), y, &mut gaps)?;
             let start = self.state.closed(contact, pair.node);
             let before = start.map_or([0.0; 2], |pair| pair.tangential.traction);

@@ -7,12 +7,24 @@
 use carom_algebra::sums::{dot, max_abs};
 use carom_contact::{Along, Row, Rows, inner, length};
 
-use crate::contact::independent::HELD;
 use crate::model::Model;
-use crate::velocity::cone::AT_REST;
+
+/// Remainder of the rows of a slip below which a stage holds them. Where the normal leans at a
+/// plane of symmetry, the contact point of a node in it lies past the end of its facet by the depth
+/// times that slope, and the facet's other nodes have shares in the slip.
+const ALMOST: f64 = 0.02;
+
+/// Slip rate, as a fraction of the largest velocity, that is none.
+pub(crate) const AT_REST: f64 = 1e-10;
 
 /// Part of a traction, relative to it, that is none.
 const NONE: f64 = 1e-6;
+
+/// Whether supports may hold a pair of this node.
+pub(crate) fn may_be_held(model: &Model, node: usize) -> bool {
+    let d = model.dimension;
+    (d * node..d * (node + 1)).any(|dof| model.fixed[dof])
+}
 
 /// Clears the rows of a slip, from `first` on, in the directions in which supports fix both sides
 /// of the pair, and in which it had no traction `before` the step; returns in how many it can slip.
@@ -27,7 +39,7 @@ pub(crate) fn hold(
 ) -> usize {
     let mut own = Rows::new(model.dimension);
     (first..slips.len()).for_each(|row| own.push_row(slips.row(row)));
-    let directions: Vec<Along> = loose(model, gap, &own, increment).collect();
+    let directions: Vec<Along> = loose(model, gap, &own, increment, ALMOST).collect();
     match directions[..] {
         [] if before == [0.0; 2] => {
             (first..slips.len()).for_each(|row| slips.gradient_mut(row).fill(0.0));
@@ -50,8 +62,14 @@ pub(crate) fn hold(
 /// may constrain its nodes along a tangent, as in a plane of symmetry: what is left of that row on
 /// free dofs is a part of the row of the `gap`, or only turns the facet, times the gap. Its force
 /// would take part of the cone without any other effect. `x`: a motion; where supports move the
-/// nodes along that tangent, they slip.
-pub(crate) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl Iterator<Item = Along> + use<> {
+/// nodes along that tangent, they slip. `remainder`: what is left of a row that counts as none.
+pub(crate) fn loose(
+    model: &Model,
+    gap: Row,
+    slips: &Rows,
+    x: &[f64],
+    remainder: f64,
+) -> impl Iterator<Item = Along> + use<> {
     let tangents = [[1.0, 0.0], [0.0, 1.0]];
     let Some(first) = slips.iter().next() else { return tangents.into_iter().take(0) };
     let e = first.first();
@@ -80,7 +98,7 @@ pub(crate) fn loose(model: &Model, gap: Row, slips: &Rows, x: &[f64]) -> impl It
         let common = free.iter().map(|(h, n)| h * n).sum::<f64>() / square.max(f64::MIN_POSITIVE);
         (free.iter().map(|(h, n)| h - common * n).collect(), moved)
     };
-    let least = HELD * HELD;
+    let least = remainder * remainder;
     let rest = AT_REST * max_abs(x);
     if slips.len() < 2 {
         let is_constrained = |row: Row| {

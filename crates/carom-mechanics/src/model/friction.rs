@@ -40,6 +40,12 @@ impl Friction {
         }
     }
 
+    /// Whether a node has friction: it is no edge, nor a coefficient of the pressure in a plane of
+    /// symmetry, whose limit is zero.
+    pub fn acts_on(&self, node: usize) -> bool {
+        node < self.places.len() && self.limits.get(node) != Some(&0.0)
+    }
+
     /// The law of every secondary node at a time, and of the edges that follow them.
     ///
     /// # Errors

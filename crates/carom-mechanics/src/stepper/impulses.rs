@@ -15,7 +15,7 @@ use carom_time::ImpulseShares;
 use super::rubbing::{combined, friction_state, kind};
 use super::watch::{active, measure_into, moves, overconstrained};
 use crate::contact::constraints::Constraints;
-use crate::contact::independent::is_dependent;
+use crate::contact::independent::{HELD, is_dependent};
 use crate::contact::loose::loose;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -140,7 +140,7 @@ impl Impulses {
             pair.tangential.tangents = slips.tangents(0);
             let law = Law { limit: dt * law.limit, ..*law };
             let kind = kind(&law, of, state, (k, pair), &slips, &state.v);
-            for along in loose(model, measured[k].row(p), &slips, &path) {
+            for along in loose(model, measured[k].row(p), &slips, &path, HELD) {
                 combination.clear();
                 combination.push_combined(&slips, 0, &along[..slips.len()]);
                 rows.push_plain((k, p), combination.row(0), Some(along));

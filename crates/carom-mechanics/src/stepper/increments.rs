@@ -11,7 +11,7 @@ use super::rubbing::{combined, friction_state, kind};
 use super::scratch::Scratch;
 use super::tied_mass::TiedMass;
 use super::watch::{active, carry_into, gap_at, measure_into, moves, overconstrained};
-use crate::contact::independent::is_dependent;
+use crate::contact::independent::{HELD, is_dependent};
 use crate::contact::loose::loose;
 use crate::contact::update::search;
 use crate::model::Model;
@@ -195,7 +195,7 @@ impl Increments<'_> {
             slips.clear();
             slip_into(model, state, (k, pair), slips)?;
             let kind = kind(law, i, state, (k, pair), slips, self.before);
-            for part in loose(model, rows[k].row(p), slips, free) {
+            for part in loose(model, rows[k].row(p), slips, free, HELD) {
                 acting.push_combined(slips, 0, &part[..slips.len()]);
                 along.push(part);
                 kinds.push(kind);

@@ -6,8 +6,8 @@ use carom_algebra::Kind;
 use carom_algebra::sums::max_abs;
 use carom_contact::{Along, FrictionState, Law, Pair, Rows, length};
 
+use crate::contact::loose::AT_REST;
 use crate::state::State;
-use crate::velocity::cone::AT_REST;
 
 /// Distance from the edge of the cone, relative to its radius, at which a node slips.
 const EDGE: f64 = 1e-12;

@@ -26,6 +26,7 @@ use carom_contact::{
 
 use crate::contact::constraints::Constraints;
 use crate::contact::independent::{DEPENDENT, independent_above, slip_remainder};
+use crate::contact::loose::{AT_REST, hold, may_be_held};
 use crate::linear::system::System;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -33,8 +34,6 @@ use crate::state::State;
 
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
-/// Slip rate, as a fraction of the largest velocity, that is none.
-pub(crate) const AT_REST: f64 = 1e-10;
 /// Rate, as a fraction of the largest one in a solve, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 /// Traction across a direction, relative to the largest one of a slip, that is round-off.
@@ -152,7 +151,12 @@ impl Closed {
                 continue;
             }
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
-            contact.kinematics.slip(&state.pairs[k][p], &state.y, &[], &mut slips).map_err(failed)?;
+            let pair = &state.pairs[k][p];
+            let first = slips.len();
+            contact.kinematics.slip(pair, &state.y, &[], &mut slips).map_err(failed)?;
+            if may_be_held(model, contact.node(pair)) {
+                hold(model, gaps[k].row(p), &mut slips, first, &state.v, pair.tangential.traction);
+            }
         }
         Ok(Self { places, normals, slips, laws })
     }

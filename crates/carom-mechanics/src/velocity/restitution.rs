@@ -18,13 +18,14 @@ use carom_algebra::sums::max_abs;
 use carom_contact::{Along, FrictionState, Pair, Row, Tangential, inner};
 
 use crate::contact::independent::independent_rows;
+use crate::contact::loose::AT_REST;
 use crate::ledger::book_kinetic;
 use crate::linear::system::System;
 use crate::model::Model;
 use crate::rejected::Rejected;
 use crate::state::State;
 use crate::velocity::active_rows::{measure, pressing};
-use crate::velocity::cone::{AT_REST, Closed, Right, Works};
+use crate::velocity::cone::{Closed, Right, Works};
 
 /// Solutions for the factor of speeds with friction, and its change that is round-off.
 const ROUNDS: usize = 50;

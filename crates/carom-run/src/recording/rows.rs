@@ -170,8 +170,8 @@ impl<'a> Described<'a, '_> {
             center: std::array::from_fn(|i| if self.has_field { coordinate(&center, i) } else { 0.0 }),
             normal,
             friction: match (&contact.friction, pair.tangential.friction_state) {
-                _ if pair.node >= contact.kinematics.rubbing() => "none",
                 (None, _) => "none",
+                (Some(friction), _) if !friction.acts_on(pair.node) => "none",
                 (_, FrictionState::Stick) => "stick",
                 (_, FrictionState::Slip(_)) => "slip",
             }

@@ -738,6 +738,64 @@ fn a_node_in_a_plane_of_symmetry_has_no_friction() {
     }
 }
 
+/// Nor has a node in that plane whose depth mortar contact bounds, although the facet below it
+/// leans.
+#[test]
+fn a_node_in_a_plane_of_symmetry_has_no_friction_with_mortar_contact() {
+    let case = |disc: &str, plate: &str, symmetry: &str| {
+        format!(
+            r#"
+            dimension = 2
+            contact = [{{ name = "c", secondary = "disc.arc", primary = "plate.top", mu = 0.3, method = "mortar" }}]
+            support = [{{ on = ["plate.bottom"], fix = ["x", "y"] }}{symmetry}]
+            time = {{ end = 0.003, step = 1e-4, scheme = {{ kind = "chung-hulbert", rho_inf = 0.6 }} }}
+            [[material]]
+            name = "steel"
+            law = "hencky"
+            density = 7.85e-6
+            young = 210.0
+            poisson = 0.3
+            plastic = {{ yield = 0.4, hardening = 1.0 }}
+            [[material]]
+            name = "aluminium"
+            law = "neo-hookean"
+            density = 2.7e-6
+            young = 70.0
+            poisson = 0.33
+            [[body]]
+            name = "disc"
+            material = "steel"
+            element = "T6"
+            mesh = {{ shape = "{disc}", radius = 5.0, center = [0.0, 5.01], size = 0.8 }}
+            velocity = [0.0, -20.0]
+            [[body]]
+            name = "plate"
+            material = "aluminium"
+            element = "T6"
+            mesh = {{ shape = "rectangle", {plate} }}
+            "#
+        )
+    };
+    let symmetry = ", { on = [\"disc.axis\", \"plate.left\"], fix = [\"x\"] }";
+    let plate = "min = [0.0, -4.0], max = [10.0, 0.0], cells = [20, 8]";
+    let half = finish(simulation(&case("half-disc", plate, symmetry), &[""; 0]));
+    let lowest = half.state().pairs[0].iter().filter(|pair| {
+        let node = half.model().contacts[0].kinematics.secondary()[pair.node];
+        pair.active && half.model().reference[2 * node].abs() < 1e-9
+    });
+    let mut found = 0;
+    for pair in lowest {
+        assert!(pair.tangential.traction[0].abs() < 1e-12, "{pair:?}");
+        found += 1;
+    }
+    assert!(found > 0);
+    let plate = "min = [-10.0, -4.0], max = [10.0, 0.0], cells = [40, 8]";
+    let whole = finish(simulation(&case("disc", plate, ""), &[""; 0]));
+    // So far, only the lowest node touches.
+    let lost = [&half, &whole].map(|sim| sim.state().ledger.friction_work);
+    assert!(lost.iter().all(|lost| lost.abs() < 1e-15), "{lost:?}");
+}
+
 /// A state is accepted with its pairs on their facets: none on the extension of one that the node
 /// has left, beside its pair with the next. The symmetric punch then does not move sideways.
 #[test]

@@ -114,7 +114,8 @@ fn facet(model: &Model, state: &State, k: usize, node: usize) -> (Option<usize>,
         && contact.kinematics.measure(&mut pair.clone(), &state.y, &mut rows).is_ok()
         && rows.row(0).nodes.len() > rows.row(0).own
     {
-        return (Some(pair.facet), ordered(&rows.row(0).nodes[rows.row(0).own..]));
+        // The row of a mean, or of a pressure field, has nodes of several facets.
+        return (Some(pair.facet), ordered(contact.kinematics.facet_nodes(pair)));
     }
     let own = contact.facets.iter().position(|(_, facets)| facets.iter().any(|nodes| nodes.contains(&node)));
     let Some((_, facets)) = own.and_then(|own| contact.facets.get(1 - own.min(1))) else {
