@@ -24,6 +24,7 @@ mod frames;
 mod frequencies;
 mod friction;
 mod friction_springs;
+mod friction_symmetry;
 mod impact;
 mod kernels;
 mod ledger;
