@@ -477,7 +477,7 @@ fn a_velocity_that_jumps_between_steps_works_at_its_mean() {
             "#
         )
     };
-    // One of ten cells, half of whose mass is that of the node.
+    // The kinetic energy of the supported node, which has half of the mass 2 of its cell.
     let change = 0.5 * 1.0 * 0.2 * 0.2;
     for scheme in [
         r#"{ kind = "backward-euler" }"#,

@@ -5,7 +5,7 @@
 //! ```text
 //! they meet across free space        n_node · n_facet < −cos 60°, and the node was not behind
 //! they lie side by side              n_node · n_facet ≥ −cos 60°
-//! they are two faces of one wall     h < 0 close by, and all material on the way: never, however thin the wall becomes
+//! they are two faces of one wall     h < 0 close by, with material alone between them: never
 //! ```
 //!
 //! At a node where several facets meet, the most opposed one counts, and the mean of their normals.
