@@ -67,6 +67,10 @@ impl OnFacets for NodeToFacet {
         past.abs() / self.primary.length(pair.facet, y)
     }
 
+    fn past_end(&self, pair: &Pair) -> f64 {
+        0.5 * (pair.xi.abs() - 1.0)
+    }
+
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         if self.single || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;

@@ -8,7 +8,9 @@
 //!
 //! so that a symmetric contact stays symmetric, and neither numbering nor a rigid motion matters.
 //! Which pairs lie on a joint is decided at the start of a solve. One that has slid off it by the
-//! end goes on with the facet where it lies: over a hollow joint the mean would let it sink.
+//! end goes on with the facet where it lies: over a hollow joint the mean would let it sink. That
+//! facet follows from positions alone: where a node leaves both facets behind it, or none, it is
+//! the one whose end is nearer, and then the one with the smaller gap.
 
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
@@ -40,14 +42,22 @@ pub(super) trait OnFacets {
     /// The joint of its facet over which a pair lies, if it does.
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8>;
 
+    /// How far the contact point of a pair lies past the end or edge of its facet, over the size of
+    /// the facet; negative inside.
+    fn past_end(&self, pair: &Pair) -> f64;
+
     /// Finds the joints over which pairs lie at the start of a solve. A node that has a pair with
     /// every facet of a concave joint keeps these.
     fn start_joints(&self, pairs: &mut [Pair], y: &[f64]) {
-        for i in 0..pairs.len() {
-            pairs[i].joint = self.joint_of(&pairs[i], y);
-            let meets = || pairs.iter().filter(|pair| pair.node == pairs[i].node).count();
-            if pairs[i].joint.is_some() && meets() == self.parts(&pairs[i], y).count() {
-                pairs[i].joint = None;
+        for own in pairs.chunk_by_mut(|one, other| one.node == other.node) {
+            let count = own.len();
+            for pair in own {
+                let joint =
+                    self.joint_of(pair, y).filter(|&joint| count != self.meeting(pair, joint, y).len());
+                if let (Some(left), None, 1) = (pair.joint, joint, count) {
+                    self.settle(pair, &self.meeting(pair, left, y), y);
+                }
+                pair.joint = joint;
             }
         }
     }
@@ -57,18 +67,55 @@ pub(super) trait OnFacets {
     fn leave_joints(&self, pairs: &mut [Pair], y: &[f64]) -> Vec<usize> {
         let mut left = Vec::new();
         let mut gaps = Rows::new(self.dimension());
-        for pair in pairs.iter_mut().filter(|pair| pair.active && pair.joint.is_some()) {
-            gaps.clear();
-            let is_measured =
-                self.parts(pair, y).all(|mut part| self.measure_one(&mut part, y, &mut gaps).is_ok());
-            let mean = gaps.iter().map(|row| row.gap).sum::<f64>() / gaps.len() as f64;
-            let apart = gaps.iter().map(|row| (row.gap - mean).abs()).fold(0.0, f64::max);
-            if !is_measured || apart > AT_JOINT * self.size(pair.facet, y) {
+        for own in pairs.chunk_by_mut(|one, other| one.node == other.node) {
+            let is_single = own.len() == 1;
+            for pair in own.iter_mut().filter(|pair| pair.active) {
+                let Some(joint) = pair.joint else { continue };
+                gaps.clear();
+                let parts = self.meeting(pair, joint, y);
+                let is_measured =
+                    parts.iter().all(|part| self.measure_one(&mut { *part }, y, &mut gaps).is_ok());
+                let mean = gaps.iter().map(|row| row.gap).sum::<f64>() / gaps.len() as f64;
+                let apart = gaps.iter().map(|row| (row.gap - mean).abs()).fold(0.0, f64::max);
+                if is_measured && apart <= AT_JOINT * self.size(pair.facet, y) {
+                    continue;
+                }
+                if is_single {
+                    self.settle(pair, &parts, y);
+                }
                 pair.joint = None;
                 left.push(pair.node);
             }
         }
         left
+    }
+
+    /// The pairs of a node with the facets that meet at a joint.
+    fn meeting(&self, pair: &Pair, joint: u8, y: &[f64]) -> Vec<Pair> {
+        self.parts(&Pair { joint: Some(joint), ..*pair }, y).collect()
+    }
+
+    /// Moves a pair that has left a joint to the facet where its node lies, one of `parts`, so that
+    /// a choice by number that the mean has hidden does not come back. With facets that cannot all
+    /// be measured it keeps its own.
+    fn settle(&self, pair: &mut Pair, parts: &[Pair], y: &[f64]) {
+        let mut row = Rows::new(self.dimension());
+        let mut best: Option<([f64; 2], Pair)> = None;
+        for part in parts {
+            let mut part = *part;
+            row.clear();
+            if self.measure_one(&mut part, y, &mut row).is_err() {
+                return;
+            }
+            let place = [self.past_end(&part).max(0.0), row.row(0).gap];
+            if best.is_none_or(|(least, _)| place < least) {
+                best = Some((place, part));
+            }
+        }
+        if let Some((_, part)) = best {
+            [pair.xi, pair.eta] = [part.xi, part.eta];
+            pair.facet = part.facet;
+        }
     }
 
     /// Puts pairs of these nodes on the joints over which they lie after they slid; returns whether

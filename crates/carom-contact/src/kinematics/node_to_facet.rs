@@ -357,8 +357,13 @@ impl Kinematics for NodeToFacet {
         let before = self.places(before);
         let now = self.places(now);
         let starts = pairing.fresh;
-        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
-        let left = self.leave_joints(&mut pairing.pairs, now.flat());
+        let left = if starts {
+            // A pair over a joint does not slide to another facet of it.
+            self.start_joints(&mut pairing.pairs, before.flat());
+            Vec::new()
+        } else {
+            self.leave_joints(&mut pairing.pairs, now.flat())
+        };
         let slid = self.slide(before, now, pairing, events)
             | self.take_joints(&mut pairing.pairs, &left, now.flat());
         if starts {

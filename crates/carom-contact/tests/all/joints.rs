@@ -107,6 +107,32 @@ fn the_normal_at_a_ridge_is_that_of_symmetry() {
     }
 }
 
+/// A pair that leaves the joint of a ridge goes on with the facet whose end is nearer, whatever
+/// facet it had there: in the cone of the ridge, where its node is past the end of both, too.
+#[test]
+fn a_node_that_leaves_a_joint_lies_on_the_nearer_facet() {
+    let surface = Surface::new(FacetShape::L2, &[vec![1, 2], vec![2, 3]], &[1.0; 2]);
+    let contact = NodeToFacet::new(vec![0], surface, Detection::ClosestPoint);
+    let at = |x: f64, height: f64| vec![x, height, 1.0, 0.0, 0.0, 0.1, -1.0, 0.0];
+    for facet in [0, 1] {
+        for (x, nearer) in [(1e-4, 0), (-1e-4, 1), (0.02, 0), (-0.02, 1)] {
+            let xi = [1.0, -1.0][facet];
+            let pair = Pair { active: true, joint: Some(u8::from(facet == 0)), ..Pair::open(0, facet, xi) };
+            let mut events = Vec::new();
+            // Within a solve.
+            let mut pairing = Pairing::new(vec![pair]);
+            pairing.fresh = false;
+            contact.search(&at(0.0, 0.11), &at(x, 0.11), &mut pairing, &mut events);
+            assert_eq!((pairing.pairs[0].joint, pairing.pairs[0].facet), (None, nearer), "{facet} {x}");
+            // Between two solves.
+            let mut pairing = Pairing::new(vec![pair]);
+            contact.search(&at(x, 0.11), &at(x, 0.11), &mut pairing, &mut events);
+            assert_eq!((pairing.pairs[0].joint, pairing.pairs[0].facet), (None, nearer), "{facet} {x}");
+            assert!(events.is_empty(), "{events:?}");
+        }
+    }
+}
+
 /// Where one of the facets of a joint has no closest point, the pair has no row: the rows of other
 /// pairs stay as they are.
 #[test]

@@ -62,6 +62,7 @@ mod space_friction_springs;
 mod space_obstacles;
 mod statics;
 mod substeps;
+mod symmetry;
 mod tangent;
 mod tie_links;
 mod tie_messages;

@@ -263,11 +263,15 @@ impl NodeToPatch {
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
             let is_on = match found.at {
                 Feature::Inside => true,
-                // A node just past the rim lies beside the facet there.
+                // A node just past the rim lies beside the facet there; one that slides along a
+                // joint lies on the next one.
                 Feature::Edge(edge) => {
-                    self.primary.is_rim(facet, edge, y)
-                        && self.primary.is_smooth(facet, normal, y)
-                        && self.primary.patch(facet).closest_point(y, from, PAST_SIDE).is_some()
+                    let is_beside = || {
+                        self.primary.is_rim(facet, edge, y)
+                            && self.primary.is_smooth(facet, normal, y)
+                            && self.primary.patch(facet).closest_point(y, from, PAST_SIDE).is_some()
+                    };
+                    is_beside() || self.is_blunt(facet, (patch.corners() + edge) as u8, y)
                 }
                 Feature::Corner(_) => false,
             };
@@ -438,8 +442,13 @@ impl Kinematics for NodeToPatch {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let starts = pairing.fresh;
-        pairing.pairs.iter_mut().filter(|_| starts).for_each(|pair| pair.joint = None);
-        let left = self.leave_joints(&mut pairing.pairs, now);
+        let left = if starts {
+            // A pair over a joint does not slide to another facet of it.
+            self.start_joints(&mut pairing.pairs, before);
+            Vec::new()
+        } else {
+            self.leave_joints(&mut pairing.pairs, now)
+        };
         let slid =
             self.slide([before, now], pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
         if starts {

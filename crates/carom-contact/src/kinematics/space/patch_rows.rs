@@ -52,6 +52,10 @@ impl OnFacets for NodeToPatch {
         self.primary.past_joint(pair.facet, joint, point, y) / self.primary.patch(pair.facet).length(y)
     }
 
+    fn past_end(&self, pair: &Pair) -> f64 {
+        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta])
+    }
+
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);

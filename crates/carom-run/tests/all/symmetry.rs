@@ -1,0 +1,111 @@
+//! Symmetric impacts on meshes whose nodes meet joints of facets: whole models move as their
+//! halves, and not sideways. Neither round-off nor the numbers of facets decide.
+
+use carom_run::GridReport;
+
+use super::common::{finish, simulation};
+
+/// The half of a block that strikes a pad whose joints lie below its nodes, and the whole, have the
+/// same force.
+#[test]
+fn a_whole_model_is_twice_its_half() {
+    let case = |scheme: &str, up: &str, pad: &str, symmetry: &str| {
+        format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "m", law = "neo-hookean", density = 1.5, young = 200.0, poisson = 0.35 }}]
+            contact = [{{ name = "c", secondary = "up.bottom", primary = "pad.top" }}]
+            support = [{{ on = ["pad.bottom"], fix = ["x", "y"] }}{symmetry}]
+            time = {{ end = 0.1, step = 0.005, scheme = {scheme} }}
+            [[body]]
+            name = "up"
+            material = "m"
+            element = "Q9"
+            mesh = {{ shape = "rectangle", {up} }}
+            velocity = [0.0, -1.0]
+            [[body]]
+            name = "pad"
+            material = "m"
+            element = "Q9"
+            mesh = {{ shape = "rectangle", {pad} }}
+            "#
+        )
+    };
+    let symmetry = ", { on = [\"up.left\", \"pad.left\"], fix = [\"x\"] }";
+    for scheme in ["{ kind = \"energy-momentum\" }", "{ kind = \"moreau-jean\", theta = 0.5 }"] {
+        let half = case(
+            scheme,
+            "min = [0.0, 0.0], max = [0.6, 0.5], cells = [3, 3]",
+            "min = [0.0, -0.52], max = [1.0, -0.02], cells = [5, 3]",
+            symmetry,
+        );
+        let whole = case(
+            scheme,
+            "min = [-0.6, 0.0], max = [0.6, 0.5], cells = [6, 3]",
+            "min = [-1.0, -0.52], max = [1.0, -0.02], cells = [10, 3]",
+            "",
+        );
+        let mut runs = [half, whole].map(|case| simulation(&case, &[""; 0]));
+        let mut most: f64 = 0.0;
+        while !runs[0].finished() {
+            runs.iter_mut().for_each(|sim| sim.advance(&mut GridReport::default()).unwrap());
+            let [half, whole] = runs.each_ref().map(|sim| sim.state().impulses[0][1]);
+            most = most.max(half.abs());
+            assert!((2.0 * half - whole).abs() <= 1e-8 * most, "{scheme}: {half} {whole}");
+        }
+        assert!(most > 0.1);
+    }
+}
+
+/// A cuboid that falls flat on a wider one does not move sideways, although nodes of either lie
+/// over joints of the other, and slide along them from one to the next.
+#[test]
+fn a_flat_drop_stays_on_its_axis() {
+    let case = |material: &str, contact: &str, time: &str, mass: &str| {
+        format!(
+            r#"
+            dimension = 3
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, {material} }}]
+            contact = [{{ name = "c", {contact} }}]
+            support = [{{ on = ["pedestal.bottom"], fix = ["x", "y", "z"] }}]
+            time = {{ {time} }}
+            [[body]]
+            name = "block"
+            material = "m"
+            element = "Hex8"
+            mesh = {{ shape = "box", min = [-0.25, -0.25, 0.005], max = [0.25, 0.25, 0.255], cells = [4, 4, 2] }}
+            velocity = [0.0, 0.0, -0.5]
+            mass = "{mass}"
+            [[body]]
+            name = "pedestal"
+            material = "m"
+            element = "Hex8"
+            mesh = {{ shape = "box", min = [-0.375, -0.375, -0.25], max = [0.375, 0.375, 0.0], cells = [6, 6, 2] }}
+            mass = "{mass}"
+            "#
+        )
+    };
+    let implicit = case(
+        "young = 1000.0, poisson = 0.3",
+        "between = \"all\"",
+        "end = 0.065, step = 0.0013, scheme = { kind = \"energy-momentum\" }",
+        "consistent",
+    );
+    let explicit = case(
+        "young = 800.0, poisson = 0.35",
+        "secondary = \"pedestal.skin\", primary = \"block.skin\"",
+        "end = 0.06612, step = 0.00087, scheme = { kind = \"central-difference\" }",
+        "lumped",
+    );
+    for case in [implicit, explicit] {
+        let sim = finish(simulation(&case, &[""; 0]));
+        let block = sim.model().parts[0].nodes();
+        let momentum =
+            |axis: usize| -> f64 { block.clone().map(|node| sim.state().v[3 * node + axis]).sum() };
+        for axis in 0..2 {
+            let sideways = momentum(axis).abs() / momentum(2).abs();
+            assert!(sideways < 1e-9, "{sideways:e}");
+        }
+        assert!(sim.state().impulses.iter().any(|impulse| impulse[2].abs() > 0.01));
+    }
+}
