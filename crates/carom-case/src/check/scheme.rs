@@ -98,7 +98,11 @@ impl Check<'_> {
                         scheme such as chung-hulbert";
             ("obstacles", "obstacle", contact.path("primary"), help)
         });
-        for (many, one, path, help) in supports.chain(obstacles).collect::<Vec<_>>() {
+        let manufactured = self.document.root().get("manufactured").map(|_| {
+            let help = "use an implicit scheme such as chung-hulbert: the boundary of [manufactured] moves";
+            ("supports", "support", "manufactured".to_owned(), help)
+        });
+        for (many, one, path, help) in supports.chain(obstacles).chain(manufactured).collect::<Vec<_>>() {
             let what = format!("moving {many} are not available with {}", spec.kind);
             let why = format!(
                 "the work and the impulse of a moving {one} are not implemented for explicit schemes and those with impulses"

@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::facets::{Facets, OnFacet};
-use super::facing::{NEAR_END, REACH, Reached};
+use super::facing::{NEAR_END, PAST_SIDE, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
 use super::hand_over::{Held, Next, Sliding};
 use super::joint::OnFacets;
@@ -186,7 +186,7 @@ impl NodeToFacet {
         let (Some(corners), Some((own, _))) = (&self.reversed, &self.own) else { return false };
         let node = self.secondary[pair.node];
         let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
-        let corner = Faced { place: pair.node, node, at, kept: self.kept(pair.node) };
+        let corner = Faced { place: pair.node, node, at };
         corners.is_left_to_node(corner, [own, &self.primary], y)
     }
 
@@ -196,13 +196,15 @@ impl NodeToFacet {
         self.allowed(place) + self.kept(place) - self.radii.get(place).copied().unwrap_or(0.0)
     }
 
-    /// The point of the primary side nearest to a secondary node that faces it, and the gap there.
+    /// The point nearest to a secondary node of the facets that it faces and can press on, and the
+    /// gap there.
     fn faced(&self, node: usize, y: Places) -> Option<(OnFacet<f64>, f64)> {
         let node = self.secondary[node];
         (0..self.primary.facets())
             .filter_map(|facet| {
-                let xi = self.primary.facet(facet).closest_point(y, y.at(node), 1.0 + 1e-9)?;
-                Some((OnFacet { facet, xi }, self.gap(node, facet, xi, y)))
+                let xi = self.primary.facet(facet).closest_point(y, y.at(node), 1.0 + PAST_SIDE)?;
+                let faced = (OnFacet { facet, xi }, self.gap(node, facet, xi, y));
+                self.may_press(node, facet, y).then_some(faced)
             })
             .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }

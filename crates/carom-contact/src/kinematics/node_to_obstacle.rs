@@ -288,8 +288,12 @@ impl Kinematics for NodeToObstacle {
         self.shape.pieces()
     }
 
+    /// Signed distance to the piece that is nearest, or on which the node presses instead.
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
-        Some(self.distance_to_obstacle(self.secondary[node], y)? + self.kept(node))
+        let local = self.local(self.secondary[node], y);
+        let nearest = self.shape.nearest(local.at, None);
+        let piece = self.pressed(node, nearest, &local, y).unwrap_or(nearest);
+        Some(self.shape.near(piece, local.at)?.gap + self.kept(node))
     }
 
     fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {

@@ -71,8 +71,6 @@ pub(super) struct Faced {
     pub place: usize,
     pub node: usize,
     pub at: OnFacet<[f64; 2]>,
-    /// Depth that the node keeps.
-    pub kept: f64,
 }
 
 /// The corners of a primary side.
@@ -116,8 +114,7 @@ impl Corners {
         let faced = secondary.nodes_of(corner.at.facet);
         self.facets[corner.place].iter().any(|&OnFacet { facet, xi }| {
             let own = primary.normal(facet, xi, y);
-            // Where an overlap is kept, they meet at that distance.
-            let near = self.near * primary.length(facet, y) + corner.kept;
+            let near = self.near * primary.length(facet, y);
             // Without regard to their depth, which may be large before convergence.
             let meets = |other: usize| cross(offset::<D>(other, corner.node, y), normal).norm() < near;
             own.dot(&normal) < -PARALLEL

@@ -24,6 +24,8 @@
 //! if the rows of both would be the same. Over a joint of facets its row is the mean of theirs, as
 //! that of a node (`joint.rs`), but with friction: the slip is that on one facet.
 
+use carom_algebra::Vector;
+
 use super::carrier::{Carrier, Local};
 use super::facing::NEAR_END;
 use super::joint::OnFacets;
@@ -162,14 +164,51 @@ impl TipToFacet {
         let near = NEAR_END * length;
         let meets = |&node: &usize| (places.at(node) - center - foot.position).dot(&along).abs() < near;
         let meets_node = self.leaves && self.side.nodes_of(pair.facet).iter().any(meets);
-        let Some([first, last]) = tip.normals else { return !meets_node };
-        let normal = self.local([center[0], center[1], 0.0], y).back([-foot.normal[0], -foot.normal[1], 0.0]);
+        match self.faces(pair.node, center, foot.normal, y) {
+            None => false,
+            Some(is_parallel) => !(meets_node && (is_parallel || tip.radius > 0.0 || tip.normals.is_none())),
+        }
+    }
+
+    /// Whether a part with this centre can press on a facet with this outward normal, and one of
+    /// the pieces beside it is parallel to the facet; none if it cannot.
+    fn faces(&self, tip: usize, center: Vector<2>, outward: Vector<2>, y: &[f64]) -> Option<bool> {
+        let Some([first, last]) = self.tips[tip].normals else { return Some(false) };
+        let normal = self.local([center[0], center[1], 0.0], y).back([-outward[0], -outward[1], 0.0]);
         let cross = |a: Point, b: Point| a[0] * b[1] - a[1] * b[0];
         let is_along = |own: Point| dot(own, normal) > PARALLEL * dot(normal, normal).sqrt();
         let is_parallel = is_along(first) || is_along(last);
         let is_between = cross(first, normal) >= 0.0 && cross(normal, last) >= 0.0;
         let faces = is_parallel || is_between && dot(first, normal) + dot(last, normal) > 0.0;
-        faces && !(meets_node && (is_parallel || tip.radius > 0.0))
+        faces.then_some(is_parallel)
+    }
+
+    /// The facet of the whole boundary that is nearest to a part with this centre, among those on
+    /// which it can press, if there are any.
+    fn nearest(&self, tip: usize, center: Vector<2>, y: &[f64]) -> Option<usize> {
+        let faces = |facet: &usize| {
+            let outward = self.side.facet(*facet).at(Places::new(y, 2), 0.0).normal;
+            self.faces(tip, center, outward, y).is_some()
+        };
+        let distance = |facet: &usize| self.side.distance(*facet, center, y);
+        let nearest = |a: &usize, b: &usize| distance(a).total_cmp(&distance(b));
+        let all = || 0..self.side.all();
+        all().filter(faces).min_by(nearest).or_else(|| all().min_by(nearest))
+    }
+
+    /// Adds the pairs of parts that keep a depth and have none: nearer to the end of the side than
+    /// they are deep, they seem to have entered the body there.
+    fn find_kept(&self, y: &[f64], pairs: &mut Vec<Pair>) {
+        let places = Places::new(y, 2);
+        for tip in (0..self.tips.len()).filter(|&tip| self.centers.kept(tip) > 0.0) {
+            if pairs.iter().any(|pair| pair.node == tip) {
+                continue;
+            }
+            let center = places.at(self.nodes + tip);
+            let faced = self.nearest(tip, center, y).filter(|&facet| self.side.is_of_side(facet));
+            let at = |facet: usize| Some((facet, self.side.facet(facet).closest_point(places, center, 1.0)?));
+            pairs.extend(faced.and_then(at).map(|(facet, xi)| Pair::open(tip, facet, xi)));
+        }
     }
 
     /// Adds pairs of a round part with the facets next to that of a pair that it penetrates too:
@@ -259,13 +298,12 @@ impl Kinematics for TipToFacet {
         self.side.facets()
     }
 
-    /// Signed distance to the whole boundary, of which the side is a part; infinite where the nodes
-    /// of the nearest facet hold the part.
+    /// Signed distance to those facets of the whole boundary, of which the side is a part, on which
+    /// the part can press; infinite where the nodes of the nearest facet hold the part.
     fn signed_distance(&self, tip: usize, y: &[f64]) -> Option<f64> {
         let all = self.with_centers(y);
         let center = Places::new(&all, 2).at(self.nodes + tip);
-        let distance = |facet: &usize| self.side.distance(*facet, center, y);
-        let nearest = (0..self.side.all()).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let nearest = self.nearest(tip, center, y)?;
         if !self.tips[tip].is_narrow(self.side.length(nearest, Places::new(y, 2))) {
             return Some(f64::INFINITY);
         }
@@ -286,6 +324,7 @@ impl Kinematics for TipToFacet {
         let mut beside = Vec::new();
         pairing.pairs.iter().for_each(|pair| self.beside(pair, &now, &pairing.pairs, &mut beside));
         pairing.pairs.append(&mut beside);
+        self.find_kept(&now, &mut pairing.pairs);
         in_order(&mut pairing.pairs);
         changed || pairing.pairs.len() > known
     }

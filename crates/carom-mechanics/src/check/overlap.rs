@@ -3,12 +3,15 @@
 //! The depth is that below the side of the contact. Where two strips of the same width overlap, the
 //! nodes at their ends lie on the boundary beside the side, and are as deep as their neighbours.
 
-use crate::check::skins::{BodySkin, part_of, position, skin};
+use crate::check::skins::{BodySkin, length, part_of, position, skin};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
 
 /// Distance outside of a body, relative to L, at which a node still counts as on its boundary.
 const ON: f64 = 1e-9;
+/// Distance outside of a body, relative to the facet there, at which a node behind a facet of the
+/// side still counts as inside: somewhat past its end, contact holds it.
+const BESIDE: f64 = 0.02;
 
 /// Depths at positions `y`, ≥ 0, beyond those that the contacts keep: for each contact one per node
 /// of its kinematics.
@@ -35,8 +38,10 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
             let at = position(y, model.dimension, node);
             let found = skins[other].as_ref().and_then(|skin| skin.depth(at, None, y));
             let distance = found.map_or(f64::INFINITY, |found| found.distance);
+            let beside = found.filter(|_| below.is_some()).zip(skins[other].as_ref());
+            let beside = beside.map_or(0.0, |(found, skin)| length(model, skin.facet_nodes(found.facet)));
             // In front of chords of a convex side, a node may be inside it.
-            let is_inside = distance <= ON * model.scale + (-kept).max(0.0);
+            let is_inside = distance <= ON * model.scale + BESIDE * beside + (-kept).max(0.0);
             // Behind a joint of a hollow side no facet is faced.
             if is_inside { below.unwrap_or(-distance - kept).max(0.0) } else { 0.0 }
         };

@@ -20,6 +20,8 @@ const WHAT: &str = "the motion of [manufactured]";
 /// The motion y(X, t), a formula for each component.
 pub struct Manufactured {
     y: Vec<Formula>,
+    /// Whether the scheme balances ρ₀ ÿ, which load steps do not.
+    has_inertia: bool,
 }
 
 /// y, H = ∂y/∂X − 1 and second derivatives at a point, flat.
@@ -31,8 +33,8 @@ struct Deformation {
 
 impl Manufactured {
     /// The motion with these components.
-    pub fn new(y: Vec<Formula>) -> Self {
-        Self { y }
+    pub fn new(y: Vec<Formula>, has_inertia: bool) -> Self {
+        Self { y, has_inertia }
     }
 
     /// Position and velocity at a point.
@@ -81,10 +83,11 @@ impl Manufactured {
             let what = "the strain energy of [manufactured], of the determinant J,".to_owned();
             NoValue { what, formula, place: place.to_vec(), time, value: det_f }
         })?;
-        for (load, formula) in load.iter_mut().zip(&self.y) {
+        load.iter_mut().for_each(|load| *load = -*load);
+        for (load, formula) in load.iter_mut().zip(&self.y).filter(|_| self.has_inertia) {
             let [.., acceleration] =
                 formula.with_derivatives(Arguments::new(place, time).as_slice(), place.len());
-            *load = part.body.density(cell) * finite(acceleration, formula, WHAT, place, time)? - *load;
+            *load += part.body.density(cell) * finite(acceleration, formula, WHAT, place, time)?;
         }
         Ok(())
     }

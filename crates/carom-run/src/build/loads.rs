@@ -15,9 +15,10 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
     let mut loads = Loads::default();
     if let Some(y) = &case.manufactured {
         match y.iter().map(|f| in_space_and_time(case, f, "manufactured.y")).collect() {
-            Ok(y) => loads.manufactured = Some(Manufactured::new(y)),
+            Ok(y) => loads.manufactured = Some(Manufactured::new(y, !case.time.scheme.is_static())),
             Err(problem) => problems.push(problem),
         }
+        problems.extend(parts.iter().enumerate().filter(|(_, part)| part.memory() > 0).map(remembering));
     }
     for (k, spec) in case.loads.iter().enumerate() {
         let specs = match &spec.kind {
@@ -53,6 +54,16 @@ pub(super) fn loads(case: &Case, parts: &[BodyInstance], problems: &mut Vec<Prob
         }
     }
     loads
+}
+
+/// A body with a memory whose motion is prescribed.
+fn remembering((k, part): (usize, &BodyInstance)) -> Problem {
+    Problem::new(
+        format!("body[{k}].material"),
+        format!("the material of body \"{}\" cannot be used with [manufactured]", part.name),
+        "the load of the motion follows from the strain at each instant, and the stress of a material that yields, or has another memory, from all strains before".to_owned(),
+        "use a material without memory".to_owned(),
+    )
 }
 
 /// A side, if it has no facet of the sides before it; `taken`: their facets.

@@ -30,6 +30,7 @@ mod kernels;
 mod ledger;
 mod linear;
 mod loads;
+mod manufactured;
 mod materials;
 mod meeting;
 mod memory;

@@ -69,6 +69,98 @@ fn kept_gaps_are_the_same_after_a_resume() {
     assert_eq!(run.state(), again.state());
 }
 
+/// A block presses on another one, or on a rigid pedestal, of its own width or somewhat narrower or
+/// wider, that it overlaps. The corner of the narrower one is nearer to the wall of the other than
+/// it is deep, and pressed by the face below all the same: the stress is uniform but for the part
+/// beyond the corner, which is 0.2 % of the width.
+#[test]
+fn corners_near_a_wall_keep_the_depth_below_the_face() {
+    let blocks = |element: &str, by: f64, primary: &str, overlap: &str| {
+        let depth = if element == "Hex8" { 3 } else { 2 };
+        let low = |x: f64, top: f64| match depth {
+            3 => format!("[{x}, {x}, {top}]"),
+            _ => format!("[{x}, {top}]"),
+        };
+        let cells = ["[4, 4]", "[2, 2, 2]"][depth - 2];
+        let vertical = ["y", "z"][depth - 2];
+        let sideways = ["\"x\"", "\"x\", \"y\""][depth - 2];
+        let shape = ["rectangle", "box"][depth - 2];
+        format!(
+            r#"
+            dimension = {depth}
+            material = [
+              {{ name = "a", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }},
+              {{ name = "b", law = "linear-elastic", density = 1.0, young = 300.0, poisson = 0.0 }},
+            ]
+            support = [
+              {{ on = ["lo.bottom"], fix = [{sideways}, "{vertical}"] }},
+              {{ on = ["up.top"], fix = [{sideways}], move = {{ {vertical} = "-0.001*t" }} }},
+            ]
+            contact = [{{ name = "c", secondary = "lo.top", primary = "{primary}", overlap = "{overlap}" }}]
+            time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
+            [[body]]
+            name = "lo"
+            material = "a"
+            element = "{element}"
+            mesh = {{ shape = "{shape}", min = {}, max = {}, cells = {cells} }}
+            [[body]]
+            name = "up"
+            material = "b"
+            element = "{element}"
+            mesh = {{ shape = "{shape}", min = {}, max = {}, cells = {cells} }}
+            "#,
+            low(0.0, 0.0),
+            low(1.0, 1.0),
+            low(by, 0.99),
+            low(1.0 - by, 2.5),
+        )
+    };
+    let pedestal = |by: f64, overlap: &str| {
+        let [left, right] = [by, 1.0 - by];
+        format!(
+            r#"
+            dimension = 2
+            material = [{{ name = "a", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }}]
+            support = [{{ on = ["b.top"], fix = ["x"], move = {{ y = "-0.001*t" }} }}]
+            time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
+            [[body]]
+            name = "b"
+            material = "a"
+            element = "Q4"
+            mesh = {{ shape = "rectangle", min = [0.0, -0.01], max = [1.0, 1.0], cells = [4, 4] }}
+            [[contact]]
+            name = "c"
+            secondary = "b.bottom"
+            primary = {{ polyline = {{ points = [[{right}, -1.0], [{right}, 0.0], [{left}, 0.0], [{left}, -1.0]] }} }}
+            overlap = "{overlap}"
+            "#
+        )
+    };
+    let force = |case: &str| {
+        let end = finish(simulation(case, &[""; 0]));
+        let d = end.model().dimension;
+        end.state().contact_forces[0][d - 1].abs()
+    };
+    // With 0.01 that remains or not, over the compliances of both.
+    let of_blocks = |closed: f64| closed / (1.0 / 100.0 + 1.51 / 300.0);
+    let of_block = |closed: f64| closed / (1.01 / 100.0);
+    for (overlap, closed) in [("keep-gap", 0.001), ("relax", 0.011)] {
+        for by in [0.0, 1e-6, 1e-3] {
+            for element in ["Q4", "Hex8"] {
+                for primary in ["up.bottom", "up.skin"] {
+                    let ratio = force(&blocks(element, by, primary, overlap)) / of_blocks(closed);
+                    let error = (ratio - 1.0).abs();
+                    assert!(error < 3.0 * by + 1e-9, "{element} {primary} {by} {overlap}: {ratio}");
+                }
+            }
+            for by in [by, -by] {
+                let ratio = force(&pedestal(by, overlap)) / of_block(closed);
+                assert!((ratio - 1.0).abs() < 1e-9, "pedestal {by} {overlap}: {ratio}");
+            }
+        }
+    }
+}
+
 #[test]
 fn an_overlap_is_refused_by_default() {
     let refused = Setup::new(&case(BARS, &["contact.fit.overlap=refuse"])).start();

@@ -174,7 +174,7 @@ impl NodeToPatch {
         let (Some(corners), Some(own)) = (&self.reversed, &self.own) else { return false };
         let node = self.secondary[pair.node];
         let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
-        let corner = Faced { place: pair.node, node, at, kept: self.kept(pair.node) };
+        let corner = Faced { place: pair.node, node, at };
         corners.is_left_to_node(corner, [own, &self.primary], y)
     }
 
@@ -204,13 +204,17 @@ impl NodeToPatch {
         -at.position.dot(&at.normal)
     }
 
-    /// The point of the primary side nearest to a secondary node that faces it, and the gap there.
+    /// The point nearest to a secondary node of the facets that it faces and can press on, and the
+    /// gap there.
     fn faced(&self, node: usize, y: &[f64]) -> Option<(OnFacet<[f64; 2]>, f64)> {
-        let from = place(y, self.secondary[node]);
+        let node = self.secondary[node];
+        let from = place(y, node);
+        let may_press = self.may_press(node, y, |facet| self.primary.middle(facet, y));
         (0..self.primary.facets())
             .filter_map(|facet| {
-                let xi = self.primary.patch(facet).closest_point(y, from, PAST)?;
-                Some((OnFacet { facet, xi }, self.gap(facet, xi, from, y)))
+                let xi = self.primary.patch(facet).closest_point(y, from, PAST_SIDE)?;
+                let faced = (OnFacet { facet, xi }, self.gap(facet, xi, from, y));
+                may_press(facet).then_some(faced)
             })
             .min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
