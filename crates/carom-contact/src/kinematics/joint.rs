@@ -9,8 +9,8 @@
 //! so that a symmetric contact stays symmetric, and neither numbering nor a rigid motion matters.
 //! Which pairs lie on a joint is decided at the start of a solve. One that has slid off it by the
 //! end goes on with the facet where it lies: over a hollow joint the mean would let it sink. That
-//! facet follows from positions alone: where a node leaves both facets behind it, or none, it is
-//! the one whose end is nearer, and then the one with the smaller gap.
+//! facet follows from positions alone: it is the one furthest from whose end the node lies inside
+//! or, past the ends of all of them, the one whose end is nearest.
 
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
@@ -100,16 +100,16 @@ pub(super) trait OnFacets {
     /// be measured it keeps its own.
     fn settle(&self, pair: &mut Pair, parts: &[Pair], y: &[f64]) {
         let mut row = Rows::new(self.dimension());
-        let mut best: Option<([f64; 2], Pair)> = None;
+        let mut best: Option<(f64, Pair)> = None;
         for part in parts {
             let mut part = *part;
             row.clear();
             if self.measure_one(&mut part, y, &mut row).is_err() {
                 return;
             }
-            let place = [self.past_end(&part).max(0.0), row.row(0).gap];
-            if best.is_none_or(|(least, _)| place < least) {
-                best = Some((place, part));
+            let past = self.past_end(&part);
+            if best.is_none_or(|(least, _)| past < least) {
+                best = Some((past, part));
             }
         }
         if let Some((_, part)) = best {

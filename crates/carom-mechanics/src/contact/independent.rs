@@ -14,17 +14,23 @@ pub(crate) const DEPENDENT: f64 = 1e-8;
 /// depend on each other.
 const NEARLY: f64 = 1e-5;
 
+/// Remainder below which a row stands for the same contact as others, as where a corner is beside a
+/// node: velocities are projected without it, and its gap keeps this share of a rate. The impulses
+/// of all would be the difference of their rates over the remainder, with opposite signs, and each
+/// would rub.
+pub(crate) const SAME: f64 = 1e-2;
+
 /// Remainder below which the slip of a pair whose nodes supports constrain along a tangent depends
 /// on other rows.
 pub(crate) const HELD: f64 = 1e-3;
 
-/// The places whose rows are linearly independent on the free dofs.
+/// The places whose rows stand for contacts of their own.
 pub(crate) fn independent_rows(
     model: &Model,
     places: impl Iterator<Item = (usize, usize)>,
     rows: &[Rows],
 ) -> Vec<(usize, usize)> {
-    independent(model, places.map(|(k, p)| ((k, p), rows[k].row(p))))
+    independent_above(model, places.map(|(k, p)| ((k, p), rows[k].row(p), SAME)))
 }
 
 /// Remainder of the row of a slip below which it depends on the others. In space supports may
@@ -42,12 +48,8 @@ pub(crate) fn is_dependent<'a>(model: &Model, rows: impl Iterator<Item = Row<'a>
     independent_above(model, counted).len() < count
 }
 
-/// The names of those rows that are linearly independent of the earlier ones on the free dofs.
-pub(crate) fn independent<'a, T>(model: &Model, rows: impl Iterator<Item = (T, Row<'a>)>) -> Vec<T> {
-    independent_above(model, rows.map(|(name, row)| (name, row, DEPENDENT)))
-}
-
-/// The same with a remainder for each row below which it depends on the others.
+/// The names of those rows that are linearly independent of the earlier ones on the free dofs, each
+/// with the remainder below which it depends on them.
 pub(crate) fn independent_above<'a, T>(
     model: &Model,
     rows: impl Iterator<Item = (T, Row<'a>, f64)>,

@@ -3,11 +3,10 @@
 //! H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16–32), with an inner primal–dual active set.
 //!
 //! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
-//! system's diagonal), and with friction and inertia its resultants vanish
-//! (`resultants.rs`); |g| ≤ 1e-12·L, and what positions
-//! are known to, on every active constraint; no pair penetrates, pulls, or has
-//! slid off its facet. Nothing less is accepted. With an augmented Lagrangian this is a round, of
-//! which there are several (`rounds.rs`).
+//! system's diagonal and the springs of penalties), and with friction and inertia its resultants
+//! vanish (`resultants.rs`); |g| ≤ 1e-12·L, and what positions are known to, on every active
+//! constraint; no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted. With
+//! an augmented Lagrangian this is a round, of which there are several (`rounds.rs`).
 
 use carom_algebra::sums::max_abs;
 
@@ -20,7 +19,7 @@ use crate::stage::equations::Equations;
 use crate::stage::evaluation::{Evaluation, Iterate, Measure};
 use crate::stage::linear_problem::{Correction, Goal};
 use crate::stage::renewal::{FrozenTangent, Renewal};
-use crate::stage::resultants::are_balanced;
+use crate::stage::resultants::{are_balanced, round_off_of_springs};
 use crate::timings::timed;
 use crate::trace::Iteration;
 use crate::workspace::Workspace;
@@ -239,7 +238,7 @@ impl<'a> Newton<'a> {
         let measure = &now.measure;
         let is_static = equations.stage.is_static();
         let tolerance = self.settings.tolerance;
-        self.noise = self.work.system.round_off(equations);
+        self.noise = self.work.system.round_off(equations) + round_off_of_springs(equations, now);
         self.enough = DIGITS * tolerance * measure.forces + self.noise;
         self.step * if is_static { 1.0 } else { self.ratio.min(1.0) } <= tolerance * model.scale
             && measure.residual <= self.enough

@@ -75,11 +75,27 @@ fn is_conserving_spring(contact: &Contact) -> bool {
     contact.interface.direction().accumulates()
 }
 
-/// Σ w k |∇g| |y| of the compressed springs over all dofs; |y| is the largest coordinate of the
-/// nodes of a gap, which is a difference of their positions.
+/// Round-off of the residual due to that of the gaps of compressed springs.
+pub(crate) fn round_off_of_springs(equations: &Equations, now: &Evaluation) -> f64 {
+    let mut square = 0.0;
+    each_spring(equations, now, |_, force| square += force * force);
+    SUMMED * square.sqrt()
+}
+
+/// Σ w k |∇g| |y| of the compressed springs over all dofs.
 fn of_springs(equations: &Equations, now: &Evaluation) -> Vec<f64> {
+    let d = equations.model.dimension;
+    let mut forces = vec![0.0; equations.model.dofs()];
+    each_spring(equations, now, |node, force| {
+        forces[node * d..(node + 1) * d].iter_mut().for_each(|sum| *sum += force);
+    });
+    forces
+}
+
+/// Calls `add(node, w k |∇g| |y|)` for the nodes of each compressed spring; |y| is the largest
+/// coordinate of the nodes of a gap, which is a difference of their positions.
+fn each_spring(equations: &Equations, now: &Evaluation, mut add: impl FnMut(usize, f64)) {
     let model = equations.model;
-    let mut forces = vec![0.0; model.dofs()];
     for (k, p) in now.pressing() {
         let compliance = now.answers[k][p].compliance;
         if compliance > 0.0 {
@@ -90,10 +106,8 @@ fn of_springs(equations: &Equations, now: &Evaluation) -> Vec<f64> {
             let factor = weight * reach / compliance;
             for (node, slopes) in row.nodes.iter().zip(row.gradient.chunks_exact(model.dimension)) {
                 let length = slopes.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
-                let dofs = &mut forces[node * model.dimension..(node + 1) * model.dimension];
-                dofs.iter_mut().for_each(|force| *force += factor * length);
+                add(*node, factor * length);
             }
         }
     }
-    forces
 }

@@ -225,3 +225,34 @@ scheme = { kind = "static" }
         assert!((force / weight - 1.0).abs() < 1e-8, "{force} {weight}");
     }
 }
+
+/// A block on springs of any stiffness: a gap is a difference of positions, and its round-off times
+/// the stiffness is a force that no correction removes.
+#[test]
+fn stiff_springs_settle_to_the_round_off_of_their_gaps() {
+    let text = r#"
+dimension = 2
+material = [{ name = "m", law = "linear-elastic", density = 0.0, young = 1e7, poisson = 0.0 }]
+support = [{ on = ["b.bottom"], fix = ["x", "y"] }]
+time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
+[[body]]
+name = "b"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-0.5, 0.0], max = [0.5, 0.5], cells = [4, 2] }
+[[contact]]
+name = "k"
+enforcement = "penalty"
+secondary = "b.top"
+primary = { plane = { point = [0.0, 0.5], normal = [0.0, -1.0] }, motion = { y = "-0.005*t" } }
+"#;
+    for stiffness in [1e2, 1e4, 1e6] {
+        let end = finish(simulation(text, &[format!("contact.k.stiffness={stiffness:e}")]));
+        // Springs of 2 E/h per stiffness, h half of the height, in line with the block.
+        let exact = 1e5 * 2.0 * stiffness / (1.0 + 2.0 * stiffness);
+        // The gap, 0.005/(1 + 2 stiffness), is known to 1e-16.
+        let known = 1e-9 + 1e-13 * stiffness;
+        let force = end.state().contact_forces[0][1];
+        assert!((force.abs() / exact - 1.0).abs() < known, "{stiffness:e}: {force} {exact}");
+    }
+}
