@@ -76,6 +76,8 @@ pub struct Constraints {
     pub dropped: Vec<((usize, usize), Along)>,
     /// Contact and pair of closed gaps that depend on these rows, and have no multiplier.
     pub dependent: Vec<(usize, usize)>,
+    /// The same of single nodes beside a field of pressure, which presses for them.
+    pub covered: Vec<(usize, usize)>,
 }
 
 impl Constraints {
@@ -89,6 +91,7 @@ impl Constraints {
             is_skew: false,
             dropped: Vec::new(),
             dependent: Vec::new(),
+            covered: Vec::new(),
         }
     }
 
@@ -125,7 +128,9 @@ impl Constraints {
             let is_row = contact.interface.is_constraint() && contact.augmentation.is_none();
             is_row && places.binary_search(&(k, p, 0)).is_err()
         };
-        constraints.dependent = evaluation.pressing().filter(depends).collect();
+        let bounds = |&(k, p): &(usize, usize)| model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
+        (constraints.covered, constraints.dependent) =
+            evaluation.pressing().filter(depends).partition(bounds);
         for (k, p, number) in places {
             let place = (k, p);
             if number > 0 {
@@ -215,8 +220,10 @@ impl Constraints {
     /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
     /// as of a node on a symmetry axis, is theirs.
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
+        let bounds =
+            |k: usize, p: usize| equations.model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
-        let gaps = evaluation.pressing().map(of_pair).fold(0.0, f64::max);
+        let gaps = evaluation.pressing().filter(|&(k, p)| !bounds(k, p)).map(of_pair).fold(0.0, f64::max);
         let slips = PreventedSlips::of(equations, evaluation);
         let open = |(k, p, number): (usize, usize, usize)| {
             let pair = &evaluation.at.pairings[k].pairs[p];
@@ -239,6 +246,9 @@ impl Constraints {
                 None => pair.lambda += share * change,
                 Some(along) => pair.tangential.pull(along, share * change),
             }
+        }
+        for &(k, p) in &self.covered {
+            pairings[k].pairs[p].lambda = 0.0;
         }
         for &((k, p), along) in &self.dropped {
             // Other rows constrain it.

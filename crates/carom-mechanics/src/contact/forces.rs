@@ -81,7 +81,9 @@ impl Equations<'_> {
             let turned = &evaluation.turned[k];
             let along = if turned.is_empty() { &evaluation.rows[k] } else { turned };
             along.row(p).add_to(weight * answer.lambda, &mut evaluation.forces.contact);
-            evaluation.measure.gap = evaluation.measure.gap.max(answer.open.abs());
+            // The field may leave a bound out of the system, but for a share of its gap.
+            let gap = if contact.bounds(pair) { 0.0 } else { answer.open.abs() };
+            evaluation.measure.gap = evaluation.measure.gap.max(gap);
         }
         evaluation.springs += answer.energy;
         evaluation.answers[k].push(answer);

@@ -15,9 +15,9 @@ pub(crate) const DEPENDENT: f64 = 1e-8;
 const NEARLY: f64 = 1e-5;
 
 /// Remainder below which a row stands for the same contact as others, as where a corner is beside a
-/// node: velocities are projected without it, and its gap keeps this share of a rate. The impulses
-/// of all would be the difference of their rates over the remainder, with opposite signs, and each
-/// would rub.
+/// node: velocities are projected without it, its gap keeps this share of a rate, and a field of
+/// pressure presses without the bounds of its nodes. The impulses of all would be the difference of
+/// their rates over the remainder, with opposite signs, and each would rub.
 pub(crate) const SAME: f64 = 1e-2;
 
 /// Remainder below which the slip of a pair whose nodes supports constrain along a tangent depends

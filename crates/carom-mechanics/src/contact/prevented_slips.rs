@@ -2,7 +2,7 @@
 
 use carom_contact::{Along, FrictionState, Row, Rows};
 
-use crate::contact::independent::{DEPENDENT, independent_above, slip_remainder};
+use crate::contact::independent::{DEPENDENT, SAME, independent_above, slip_remainder};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 
@@ -54,7 +54,11 @@ impl PreventedSlips {
         let gaps = || evaluation.pressing().map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p)));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
         let least = slip_remainder(model);
-        let rows = gaps().map(|(name, row)| (name, row, DEPENDENT));
+        let least_gap = |&(k, p, _): &Name| {
+            let bounds = model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
+            if bounds { SAME } else { DEPENDENT }
+        };
+        let rows = gaps().map(|(name, row)| (name, row, least_gap(&name)));
         let rows = rows.chain(self.iter().map(|(name, row)| (name, row, least)));
         let mut chosen = independent_above(model, rows.filter(|(name, ..)| !is_elastic(name)));
         let acts = |row: Row| row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);

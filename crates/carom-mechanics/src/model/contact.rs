@@ -67,6 +67,11 @@ impl Contact {
         self.kinematics.secondary()[pair.node]
     }
 
+    /// Whether a pair keeps out a single node beside a field of pressure.
+    pub(crate) fn bounds(&self, pair: &Pair) -> bool {
+        self.kinematics.is_of_field(0) && !self.kinematics.is_of_field(pair.node)
+    }
+
     /// Whether it is a constraint whose closed gaps do no work.
     pub(crate) fn conserves(&self) -> bool {
         self.interface.is_constraint() && self.interface.direction() == Direction::DiscreteGradient

@@ -86,6 +86,7 @@ pub(crate) fn solve_stage(
                 continue;
             }
             (newton.effort.events, newton.effort.frozen) = (newton.contact.events, newton.renewal.finish());
+            open_covered(equations, &mut now);
             return Ok((now, newton.effort));
         }
         if changed {
@@ -102,6 +103,14 @@ pub(crate) fn solve_stage(
             continue;
         }
         now = newton.advance(now, &correction, &rows, changed)?;
+    }
+}
+
+/// Opens the pairs of single nodes for which a field of pressure presses.
+fn open_covered(equations: &Equations, now: &mut Evaluation) {
+    for (contact, pairing) in equations.model.contacts.iter().zip(&mut now.at.pairings) {
+        let covered = pairing.pairs.iter_mut().filter(|pair| pair.lambda == 0.0 && contact.bounds(pair));
+        covered.for_each(|pair| pair.active = false);
     }
 }
 

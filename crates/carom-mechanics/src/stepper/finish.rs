@@ -8,11 +8,11 @@ use super::meetings::{Path, meetings};
 use super::watch::depth;
 use super::{Accepted, StepReport, difference, nodes_at};
 use crate::carried;
-use crate::friction_state::book_states;
-use crate::ledger::changes_of_reactions;
+use crate::friction_state::{book_states, friction_forces};
+use crate::ledger::{balance_into, changes_of_reactions};
 use crate::model::Model;
 use crate::rejected::Rejected;
-use crate::state::{Previous, State};
+use crate::state::{Means, Previous, State};
 use crate::velocity::persistency::{asks, project};
 use crate::velocity::restitution::{self, Impact, separate};
 use crate::works::Works;
@@ -34,7 +34,7 @@ pub(super) struct Finish<'a> {
     pub impulses: Works,
     /// The parts of the step, to find when nodes met the other side; none if that is not asked.
     pub paths: Vec<Path<'a>>,
-    /// What a two-step scheme needs of this step, unless velocities jump at its end.
+    /// What a two-step scheme needs of this step, unless contacts change at its end.
     pub previous: Option<Previous>,
     /// The depth that the contact law leaves; none if it leaves no more than the checks allow.
     pub leaves: Option<f64>,
@@ -90,9 +90,43 @@ impl Finish<'_> {
             report.restitution = separate(model, &mut next, &released, &mut work.system)?;
         }
         let continues = projected.is_none() && report.activations.is_empty();
-        next.previous = self.previous.filter(|_| continues);
+        // Projected velocities and accelerations are those of a motion that goes on.
+        next.previous = match self.previous {
+            Some(previous) if continues => Some(previous),
+            Some(_) if projected.is_some() => Some(before_projection(model, &next, dt)),
+            _ => None,
+        };
         book_states(model, &mut next, dt);
         Accepted::new(model, next, report, work)
+    }
+}
+
+/// The step before a state that was projected, as a two-step scheme needs it: with the state's
+/// acceleration and its forces.
+fn before_projection(model: &Model, state: &State, dt: f64) -> Previous {
+    let mut means = Means::new(model.dofs(), model.contacts.len());
+    means.contact.clone_from(&state.f_contact);
+    means.contact_forces.clone_from(&state.contact_forces);
+    if model.has_friction() {
+        means.friction = friction_forces(state).into_owned();
+    }
+    if !model.loads.is_empty() {
+        means.loads.clone_from(&state.f_external);
+    }
+    if !model.motions.is_empty() {
+        let mut supports = vec![0.0; model.dofs()];
+        balance_into(model, state, &state.a, &mut supports);
+        for dof in model.motions.dofs() {
+            means.supports[dof] = supports[dof];
+            means.accelerations[dof] = state.a[dof];
+        }
+    }
+    let motion = || state.v.iter().zip(&state.a);
+    Previous {
+        dt,
+        increment: motion().map(|(v, a)| dt * (v - 0.5 * dt * a)).collect(),
+        velocity: motion().map(|(v, a)| v - dt * a).collect(),
+        means,
     }
 }
 

@@ -52,3 +52,26 @@ fn a_belt_that_accelerates_is_a_belt_at_rest_with_an_inertia_force() {
         }
     }
 }
+
+/// A block that sticks to a belt with the acceleration 0.3 t has the reaction m a, also with a
+/// scheme of two steps, which begins anew wherever a node begins to stick.
+#[test]
+fn a_block_that_sticks_has_the_acceleration_of_the_belt() {
+    let sets = [
+        "body.b.mesh={ shape = \"rectangle\", min = [0.0, 0.0], max = [1.0, 0.3], cells = [3, 1] }",
+        "body.b.gravity=[0.0, -2.0]",
+        "material.m.young=20000.0",
+        "contact.c.mu=0.3",
+        "contact.c.primary={ plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }, motion = { x = \"0.05*t^3\" } }",
+        "time.end=1.0",
+        "time.step=0.01",
+        "time.scheme={ kind = \"bdf2\" }",
+    ];
+    let run = record(BLOCK, &[&sets[..], &["body.b.element=Q9"]].concat());
+    let forces = run.column("contact_force_x").unwrap();
+    // After the start, in which the block settles.
+    for (row, force) in forces.iter().enumerate().skip(40) {
+        let exact = 0.3 * (0.3 * 0.01 * row as f64);
+        assert!((force / exact - 1.0).abs() < 1e-3, "row {row}: {force} {exact}");
+    }
+}

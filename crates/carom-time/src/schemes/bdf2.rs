@@ -6,8 +6,16 @@
 //! ```
 //!
 //! Order 2, ρ∞ = 0 (Gear 1971). Without a previous step of the same size it falls back on backward
-//! Euler. The mean force of a step follows from M (v_{s+1} − v_s) = ⅓ M (v_s − v_{s−1}) + ⅔ Δt M
-//! a_{s+1}.
+//! Euler. Where velocities and accelerations were projected, that step is
+//!
+//! ```text
+//! d_s = Δt v_s − ½ Δt² a_s,   v_{s−1} = v_s − Δt a_s
+//! ```
+//!
+//! since the accelerations after a step of backward Euler have an error of ¾ a, however short it
+//! is, and friction follows them. The mean force of a step follows from M (v_{s+1} − v_s) =
+//! ⅓ M (v_s − v_{s−1}) + ⅔ Δt M a_{s+1}.
+
 use super::backward_euler::BackwardEuler;
 use crate::kind::{Build, KindInfo, Member};
 use crate::stage::{Kernel, Memory, Stage};
@@ -37,7 +45,7 @@ impl Kernel for Bdf2 {
 
     fn notes(&self) -> &'static [&'static str] {
         &[
-            "two-step method: uses backward Euler at the start, after a bisected step, and at contact activation",
+            "two-step method: uses backward Euler at the start, after a bisected step, and where contacts begin without a projection of velocities",
         ]
     }
 
