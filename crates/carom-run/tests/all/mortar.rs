@@ -438,7 +438,7 @@ fix = ["x"]
     assert!(long < 1e-5 && short < 0.2 * long, "{long:e} {short:e}");
 }
 
-/// Blocks whose sides end beside each other, one of which widens a little more or is a little wider:
+/// Blocks whose sides end beside each other, one of which widens more or is a little wider:
 /// the corner's row is nearly one of the weighted rows, and the pressure is theirs alone.
 #[test]
 fn corners_beside_each_other_have_no_part_in_a_uniform_pressure() {
