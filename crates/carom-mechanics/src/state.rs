@@ -237,7 +237,7 @@ pub struct State {
     /// Energies and works.
     pub ledger: Ledger,
     /// The previous step, for a two-step scheme and for load steps of materials that remember; none
-    /// at the start and after an activation.
+    /// at the start and after an activation without a projection of velocities.
     pub previous: Option<Previous>,
     /// For an explicit scheme.
     pub half_step: HalfStepVelocity,
@@ -421,6 +421,15 @@ impl State {
         self.bisection = *bisection;
         self.overlaps.clone_from(overlaps);
         self.materials.follow(materials);
+    }
+
+    /// Opens the pairs of single nodes for which a field of pressure presses, which have no
+    /// multiplier.
+    pub(crate) fn open_covered(&mut self, model: &Model) {
+        for (contact, pairs) in model.contacts.iter().zip(&mut self.pairs) {
+            let covered = pairs.iter_mut().filter(|pair| pair.lambda == 0.0 && contact.bounds(pair));
+            covered.for_each(|pair| pair.active = false);
+        }
     }
 
     /// Takes over the pairs at the end of a solve.

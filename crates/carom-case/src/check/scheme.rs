@@ -89,21 +89,21 @@ impl Check<'_> {
         let supports = moved.map(|(i, _)| {
             let help =
                 "fix the side, apply a [[load]] instead, or use an implicit scheme such as chung-hulbert";
-            ("supports", "support", format!("support[{i}].move"), help)
+            ("moving supports are", "support", format!("support[{i}].move"), help)
         });
         let contacts = draft.contact.iter().flatten();
         let moved = contacts.filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. }));
         let obstacles = moved.map(|contact| {
             let help = "leave out `motion` and give the bodies the opposite velocity, or use an implicit \
                         scheme such as chung-hulbert";
-            ("obstacles", "obstacle", contact.path("primary"), help)
+            ("moving obstacles are", "obstacle", contact.path("primary"), help)
         });
         let manufactured = self.document.root().get("manufactured").map(|_| {
-            let help = "use an implicit scheme such as chung-hulbert: the boundary of [manufactured] moves";
-            ("supports", "support", "manufactured".to_owned(), help)
+            let help = "use an implicit scheme such as chung-hulbert";
+            ("a boundary that moves is", "support", "manufactured".to_owned(), help)
         });
         for (many, one, path, help) in supports.chain(obstacles).chain(manufactured).collect::<Vec<_>>() {
-            let what = format!("moving {many} are not available with {}", spec.kind);
+            let what = format!("{many} not available with {}", spec.kind);
             let why = format!(
                 "the work and the impulse of a moving {one} are not implemented for explicit schemes and those with impulses"
             );

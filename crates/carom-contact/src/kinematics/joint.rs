@@ -52,8 +52,9 @@ pub(super) trait OnFacets {
         for own in pairs.chunk_by_mut(|one, other| one.node == other.node) {
             let count = own.len();
             for pair in own {
-                let joint =
-                    self.joint_of(pair, y).filter(|&joint| count != self.meeting(pair, joint, y).len());
+                let joint = self
+                    .joint_of(pair, y)
+                    .filter(|&joint| count == 1 || count != self.meeting(pair, joint, y).len());
                 if let (Some(left), None, 1) = (pair.joint, joint, count) {
                     self.settle(pair, &self.meeting(pair, left, y), y);
                 }
@@ -107,7 +108,7 @@ pub(super) trait OnFacets {
             if self.measure_one(&mut part, y, &mut row).is_err() {
                 return;
             }
-            let past = self.past_end(&part);
+            let past = self.past_end(&part) * self.size(part.facet, y);
             if best.is_none_or(|(least, _)| past < least) {
                 best = Some((past, part));
             }

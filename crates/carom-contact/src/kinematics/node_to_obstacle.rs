@@ -292,8 +292,8 @@ impl Kinematics for NodeToObstacle {
     fn signed_distance(&self, node: usize, y: &[f64]) -> Option<f64> {
         let local = self.local(self.secondary[node], y);
         let nearest = self.shape.nearest(local.at, None);
-        let piece = self.pressed(node, nearest, &local, y).unwrap_or(nearest);
-        Some(self.shape.near(piece, local.at)?.gap + self.kept(node))
+        let pressed = if self.shape.pieces() == 1 { None } else { self.pressed(node, nearest, &local, y) };
+        Some(self.shape.near(pressed.unwrap_or(nearest), local.at)?.gap + self.kept(node))
     }
 
     fn distance_to_obstacle(&self, node: usize, y: &[f64]) -> Option<f64> {

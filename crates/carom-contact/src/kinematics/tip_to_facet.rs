@@ -324,9 +324,10 @@ impl Kinematics for TipToFacet {
         let mut beside = Vec::new();
         pairing.pairs.iter().for_each(|pair| self.beside(pair, &now, &pairing.pairs, &mut beside));
         pairing.pairs.append(&mut beside);
+        let penetrates = pairing.pairs.len() > known;
         self.find_kept(&now, &mut pairing.pairs);
         in_order(&mut pairing.pairs);
-        changed || pairing.pairs.len() > known
+        changed || penetrates
     }
 
     fn passed(&self, before: &[f64], now: &[f64], bounce: f64) -> Option<Passed> {

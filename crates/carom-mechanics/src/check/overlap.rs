@@ -40,6 +40,8 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
             let distance = found.map_or(f64::INFINITY, |found| found.distance);
             let beside = found.filter(|_| below.is_some()).zip(skins[other].as_ref());
             let beside = beside.map_or(0.0, |(found, skin)| length(model, skin.facet_nodes(found.facet)));
+            // Further behind it lies beside a wall.
+            let beside = if below.is_some_and(|below| below <= beside) { beside } else { 0.0 };
             // In front of chords of a convex side, a node may be inside it.
             let is_inside = distance <= ON * model.scale + BESIDE * beside + (-kept).max(0.0);
             // Behind a joint of a hollow side no facet is faced.

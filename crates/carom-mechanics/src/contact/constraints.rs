@@ -4,12 +4,14 @@
 //! residual would not reveal. A row is kept if its gradient on free dofs is linearly independent of
 //! those of the rows before. A node on a symmetry axis keeps its support and its contact; a corner
 //! node in two contacts with one facet keeps one of them, for any contacts and nodes (Gaussian
-//! elimination of the sparse rows).
+//! elimination of the sparse rows). The row of a single node beside a field of pressure is also
+//! left out where it nearly depends on others.
 
 use carom_contact::{
     Along, Answer, Direction, DiscreteGradient, FrictionState, Pair, Pairing, Row, Rows, inner, length,
 };
 
+use crate::contact::independent::SAME;
 use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::slip_derivatives::SlipDerivatives;
 use crate::stage::balance::contact_weights;
@@ -76,7 +78,7 @@ pub struct Constraints {
     pub dropped: Vec<((usize, usize), Along)>,
     /// Contact and pair of closed gaps that depend on these rows, and have no multiplier.
     pub dependent: Vec<(usize, usize)>,
-    /// The same of single nodes beside a field of pressure, which presses for them.
+    /// The same of single nodes beside a field of pressure, which presses in their place.
     pub covered: Vec<(usize, usize)>,
 }
 
@@ -128,9 +130,9 @@ impl Constraints {
             let is_row = contact.interface.is_constraint() && contact.augmentation.is_none();
             is_row && places.binary_search(&(k, p, 0)).is_err()
         };
-        let bounds = |&(k, p): &(usize, usize)| model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
+        let covered = |place: &(usize, usize)| is_covered(equations, evaluation, *place);
         (constraints.covered, constraints.dependent) =
-            evaluation.pressing().filter(depends).partition(bounds);
+            evaluation.pressing().filter(depends).partition(covered);
         for (k, p, number) in places {
             let place = (k, p);
             if number > 0 {
@@ -220,11 +222,13 @@ impl Constraints {
     /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
     /// as of a node on a symmetry axis, is theirs.
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
-        let bounds =
-            |k: usize, p: usize| equations.model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
-        let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
-        let gaps = evaluation.pressing().filter(|&(k, p)| !bounds(k, p)).map(of_pair).fold(0.0, f64::max);
         let slips = PreventedSlips::of(equations, evaluation);
+        let places = slips.independent(equations, evaluation);
+        let counts = |&(k, p): &(usize, usize)| {
+            places.binary_search(&(k, p, 0)).is_ok() || !is_covered(equations, evaluation, (k, p))
+        };
+        let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
+        let gaps = evaluation.pressing().filter(counts).map(of_pair).fold(0.0, f64::max);
         let open = |(k, p, number): (usize, usize, usize)| {
             let pair = &evaluation.at.pairings[k].pairs[p];
             let is_spring = number == 0 || equations.stick_spring(k, pair).is_some();
@@ -235,7 +239,7 @@ impl Constraints {
             let (along, slip) = slips.find((k, p, number));
             weight * (slip.gap - equations.stretch(k, pair, along, evaluation.at.stiffer)).abs()
         };
-        slips.independent(equations, evaluation).into_iter().map(open).fold(gaps, f64::max)
+        places.into_iter().map(open).fold(gaps, f64::max)
     }
 
     /// Adds a share of a correction to the multipliers of the pairs.
@@ -362,4 +366,23 @@ impl Evaluation {
         let places = self.pressing().filter(move |&(k, p)| slips(&self.at.pairings[k].pairs[p]));
         places.filter(|&(k, _)| !self.slips[k].is_empty()).flat_map(|place| self.slip_rows(place))
     }
+}
+
+/// Whether the field of pressure beside a single node presses for it, whose row depends on others:
+/// its gap is closed but for the share that the row may differ from them.
+fn is_covered(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, usize)) -> bool {
+    let model = equations.model;
+    let row = evaluation.rows[k].row(p);
+    let acts = row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
+    let size = extent(row.nodes, &evaluation.y, model.dimension);
+    let is_closed = evaluation.answers[k][p].open.abs() <= model.gap_tolerance + SAME * size;
+    acts && is_closed && model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p])
+}
+
+/// Largest distance between nodes.
+fn extent(nodes: &[usize], y: &[f64], d: usize) -> f64 {
+    let square = |a: usize, b: usize| (0..d).map(|i| (y[a * d + i] - y[b * d + i]).powi(2)).sum::<f64>();
+    let from =
+        |(place, &a): (usize, &usize)| nodes[..place].iter().map(|&b| square(a, b)).fold(0.0, f64::max);
+    nodes.iter().enumerate().map(from).fold(0.0, f64::max).sqrt()
 }

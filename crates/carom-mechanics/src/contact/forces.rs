@@ -45,7 +45,7 @@ impl Equations<'_> {
             forces.friction.resize(dofs, 0.0);
             middle.extend(self.state.y.iter().zip(&at.increment).map(|(y, d)| y + 0.5 * d));
         }
-        (measure.gap, measure.has_slip) = (0.0, false);
+        (measure.gap, measure.may_depend) = (0.0, false);
         (evaluation.springs, evaluation.stick_springs) = (0.0, 0.0);
     }
 
@@ -81,9 +81,8 @@ impl Equations<'_> {
             let turned = &evaluation.turned[k];
             let along = if turned.is_empty() { &evaluation.rows[k] } else { turned };
             along.row(p).add_to(weight * answer.lambda, &mut evaluation.forces.contact);
-            // The field may leave a bound out of the system, but for a share of its gap.
-            let gap = if contact.bounds(pair) { 0.0 } else { answer.open.abs() };
-            evaluation.measure.gap = evaluation.measure.gap.max(gap);
+            evaluation.measure.gap = evaluation.measure.gap.max(answer.open.abs());
+            evaluation.measure.may_depend |= contact.bounds(pair);
         }
         evaluation.springs += answer.energy;
         evaluation.answers[k].push(answer);

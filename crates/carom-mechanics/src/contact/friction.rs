@@ -373,7 +373,7 @@ impl Equations<'_> {
         for along in self.prevented(contact, pair) {
             let open = inner(along, slip) - self.stretch(contact, pair, along, at.stiffer);
             let missed = self.weight_of_slip(pair, slip) * open.abs();
-            (measure.gap, measure.has_slip) = (measure.gap.max(missed), true);
+            (measure.gap, measure.may_depend) = (measure.gap.max(missed), true);
         }
         Ok(())
     }

@@ -20,6 +20,13 @@ const NEARLY: f64 = 1e-5;
 /// their rates over the remainder, with opposite signs, and each would rub.
 pub(crate) const SAME: f64 = 1e-2;
 
+/// The remainder below which a row stands for the same contact as others. What supports leave of a
+/// row may be small by itself.
+pub(crate) fn same_contact(model: &Model, row: Row) -> f64 {
+    let largest = on_free_dofs(model, row).iter().fold(0.0_f64, |most, (_, slope)| most.max(slope.abs()));
+    (SAME * largest).max(DEPENDENT)
+}
+
 /// Remainder below which the slip of a pair whose nodes supports constrain along a tangent depends
 /// on other rows.
 pub(crate) const HELD: f64 = 1e-3;
@@ -30,7 +37,10 @@ pub(crate) fn independent_rows(
     places: impl Iterator<Item = (usize, usize)>,
     rows: &[Rows],
 ) -> Vec<(usize, usize)> {
-    independent_above(model, places.map(|(k, p)| ((k, p), rows[k].row(p), SAME)))
+    independent_above(
+        model,
+        places.map(|(k, p)| ((k, p), rows[k].row(p), same_contact(model, rows[k].row(p)))),
+    )
 }
 
 /// Remainder of the row of a slip below which it depends on the others. In space supports may

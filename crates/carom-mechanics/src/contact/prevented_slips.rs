@@ -2,7 +2,7 @@
 
 use carom_contact::{Along, FrictionState, Row, Rows};
 
-use crate::contact::independent::{DEPENDENT, SAME, independent_above, slip_remainder};
+use crate::contact::independent::{DEPENDENT, independent_above, same_contact, slip_remainder};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 
@@ -54,12 +54,12 @@ impl PreventedSlips {
         let gaps = || evaluation.pressing().map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p)));
         // The slip of a pair after all gaps: what depends on both keeps its gap.
         let least = slip_remainder(model);
-        let least_gap = |&(k, p, _): &Name| {
-            let bounds = model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
-            if bounds { SAME } else { DEPENDENT }
+        let bounds = |&(k, p, _): &Name| model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
+        let above = |name: Name, row, least: f64| {
+            (name, row, if bounds(&name) { same_contact(model, row).max(least) } else { least })
         };
-        let rows = gaps().map(|(name, row)| (name, row, least_gap(&name)));
-        let rows = rows.chain(self.iter().map(|(name, row)| (name, row, least)));
+        let rows = gaps().map(|(name, row)| above(name, row, DEPENDENT));
+        let rows = rows.chain(self.iter().map(|(name, row)| above(name, row, least)));
         let mut chosen = independent_above(model, rows.filter(|(name, ..)| !is_elastic(name)));
         let acts = |row: Row| row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
         let elastic = gaps().chain(self.iter()).filter(|(name, _)| is_elastic(name));

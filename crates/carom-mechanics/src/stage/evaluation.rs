@@ -103,8 +103,9 @@ pub struct Measure {
     pub forces: f64,
     /// Largest |g| of the active constraints, and slip that friction prevents.
     pub gap: f64,
-    /// Whether `gap` contains a slip that friction prevents.
-    pub has_slip: bool,
+    /// Whether `gap` contains that of rows for which others may stand: slips that friction
+    /// prevents, and single nodes beside a field of pressure.
+    pub may_depend: bool,
 }
 
 /// Unused evaluations, whose memory is reused.

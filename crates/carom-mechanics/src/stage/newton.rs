@@ -86,7 +86,6 @@ pub(crate) fn solve_stage(
                 continue;
             }
             (newton.effort.events, newton.effort.frozen) = (newton.contact.events, newton.renewal.finish());
-            open_covered(equations, &mut now);
             return Ok((now, newton.effort));
         }
         if changed {
@@ -103,14 +102,6 @@ pub(crate) fn solve_stage(
             continue;
         }
         now = newton.advance(now, &correction, &rows, changed)?;
-    }
-}
-
-/// Opens the pairs of single nodes for which a field of pressure presses.
-fn open_covered(equations: &Equations, now: &mut Evaluation) {
-    for (contact, pairing) in equations.model.contacts.iter().zip(&mut now.at.pairings) {
-        let covered = pairing.pairs.iter_mut().filter(|pair| pair.lambda == 0.0 && contact.bounds(pair));
-        covered.for_each(|pair| pair.active = false);
     }
 }
 
@@ -252,7 +243,7 @@ impl<'a> Newton<'a> {
         self.step * if is_static { 1.0 } else { self.ratio.min(1.0) } <= tolerance * model.scale
             && measure.residual <= self.enough
             && (measure.gap <= model.gap_tolerance
-                || measure.has_slip && Constraints::gap(equations, now) <= model.gap_tolerance)
+                || measure.may_depend && Constraints::gap(equations, now) <= model.gap_tolerance)
             && (is_static || are_balanced(equations, now, self.noise))
     }
 

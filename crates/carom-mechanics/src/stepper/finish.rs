@@ -34,7 +34,8 @@ pub(super) struct Finish<'a> {
     pub impulses: Works,
     /// The parts of the step, to find when nodes met the other side; none if that is not asked.
     pub paths: Vec<Path<'a>>,
-    /// What a two-step scheme needs of this step, unless contacts change at its end.
+    /// The data of this step for a two-step scheme, used if neither contacts nor velocities change
+    /// at its end.
     pub previous: Option<Previous>,
     /// The depth that the contact law leaves; none if it leaves no more than the checks allow.
     pub leaves: Option<f64>,

@@ -157,6 +157,7 @@ impl Stepper for Implicit {
         take_motions(&equations, &mut next);
         next.take_pairs(&solved.at.pairings);
         take_slips(&equations, &solved, &mut next);
+        next.open_covered(model);
         next.f_external.clone_from(&solved.forces.loads);
         next.f_internal.clone_from(&solved.forces.internal);
         let mut strain = solved.strain;

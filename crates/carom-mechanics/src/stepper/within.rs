@@ -47,6 +47,7 @@ pub(super) fn project_within(
     end.y.clone_from(&solved.y);
     end.take_pairs(&solved.at.pairings);
     take_slips(equations, solved, &mut end);
+    end.open_covered(model);
     end.f_internal.clone_from(&solved.forces.internal);
     end.f_external.clone_from(&solved.forces.loads);
     project_stage(model, &mut end, start, &mut work.system)?;

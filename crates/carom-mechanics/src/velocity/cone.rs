@@ -25,7 +25,7 @@ use carom_contact::{
 };
 
 use crate::contact::constraints::Constraints;
-use crate::contact::independent::{SAME, independent_above, slip_remainder};
+use crate::contact::independent::{independent_above, same_contact, slip_remainder};
 use crate::contact::loose::{AT_REST, hold, may_be_held};
 use crate::linear::system::System;
 use crate::model::Model;
@@ -431,9 +431,9 @@ impl Closed {
                 slips.push_combined(&self.slips, i * (d - 1), &along[..d - 1]);
             }
         }
-        let normals = self.normals.rows.iter().map(|row| (None, row, SAME));
-        let least = slip_remainder(model).max(SAME);
-        let tangents = slips.iter().enumerate().map(|(name, row)| (Some(name), row, least));
+        let normals = self.normals.rows.iter().map(|row| (None, row, same_contact(model, row)));
+        let least = |row: Row| slip_remainder(model).max(same_contact(model, row));
+        let tangents = slips.iter().enumerate().map(|(name, row)| (Some(name), row, least(row)));
         let holding: Vec<usize> =
             independent_above(model, normals.chain(tangents)).into_iter().flatten().collect();
         for &name in &holding {

@@ -95,6 +95,15 @@ pub(crate) fn asks(model: &Model, &(contact, _): &Place) -> bool {
     model.contacts[contact].projects
 }
 
+/// Pairs in their order, those that are asked for first: none of these is left out for another one.
+fn asking_first(
+    places: impl Iterator<Item = Place>,
+    asks: impl Fn(&Place) -> bool,
+) -> impl Iterator<Item = Place> {
+    let (asking, others): (Vec<Place>, Vec<Place>) = places.partition(asks);
+    asking.into_iter().chain(others)
+}
+
 /// The closed pairs of a state that is projected.
 struct Pressed {
     /// Rows of all pairs.
@@ -108,8 +117,10 @@ struct Pressed {
 impl Pressed {
     fn new(model: &Model, state: &mut State, start: &State) -> Result<Self, Rejected> {
         let gaps = measure_all(model, state)?;
-        let mut places = independent_rows(model, pressing(state), &gaps);
+        let mut places =
+            independent_rows(model, asking_first(pressing(state), |place| asks(model, place)), &gaps);
         places.retain(|place| asks(model, place));
+        places.sort_unstable();
         let closed = Closed::new(model, state, places, &gaps)?;
         let slid = closed.slid(state, start);
         Ok(Self { gaps, closed, slid })
@@ -167,8 +178,9 @@ pub(crate) fn accelerate(
         let is_held = |place: &Place| pairs.binary_search(place).is_ok_and(|i| held[i]);
         // Of rows that depend on each other the next one takes over where one is let go.
         let candidates = pressing(state).filter(|place| !asks(place) || is_held(place));
-        let mut places = independent_rows(model, candidates, gaps);
+        let mut places = independent_rows(model, asking_first(candidates, &asks), gaps);
         places.retain(&asks);
+        places.sort_unstable();
         let closed = Closed::new(model, state, places, gaps)?;
         let of_place = |place: &Place| pairs.binary_search(place).map_or(0.0, |i| bent[i]);
         let bending: Vec<f64> = closed.places.iter().map(of_place).collect();

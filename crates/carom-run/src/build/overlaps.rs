@@ -45,6 +45,10 @@ pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> b
                 ),
             );
         }
+        let instead = match case.contacts[k].overlap {
+            Overlap::Refuse => "give the contact overlap = \"relax\" or \"keep-gap\"",
+            Overlap::Relax | Overlap::KeepGap | Overlap::Touch => "name the sides that overlap",
+        };
         let chord = deviation(model, k, node);
         let (straight, curved) = if chord > ROUND_OFF * model.scale {
             let chord = quantity(chord, unit);
@@ -61,9 +65,7 @@ pub(crate) fn overlaps(case: &Case, model: &Model, counts: impl Fn(Overlap) -> b
             format!(
                 "the node of \"{owner}\" at {place} lies {inside}{straight}; closing the overlap within one step would drive the bodies apart"
             ),
-            format!(
-                "move a body by at least {by}, {turn}{curved}or give the contact overlap = \"relax\" or \"keep-gap\""
-            ),
+            format!("move a body by at least {by}, {turn}{curved}or {instead}"),
         )
     };
     let mut found = carom_mechanics::inside(model, x, ROUND_OFF * model.scale);

@@ -518,3 +518,47 @@ fn bars_that_meet_end_on_end_stay_on_their_axis() {
     let along = sim.state().impulses[0][0];
     assert!(across.abs() < 1e-9 * along.abs(), "{across:e} {along:e}");
 }
+
+/// A block that slides on a layer a little narrower at one end than it and far at the other: where
+/// the pressure presses in place of a corner, the impulse is still the change of momentum.
+#[test]
+fn impulses_beside_corners_are_changes_of_momentum() {
+    let text = r#"
+        dimension = 2
+        material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+        contact = [{ name = "c", secondary = "up.bottom", primary = "lo.top", method = "mortar", mu = 0.5 }]
+        support = [{ on = ["lo.bottom"], fix = ["x", "y"] }]
+        time = { end = 0.2, step = 0.002, scheme = { kind = "bathe", rho_inf = 0.5 } }
+        [[body]]
+        name = "up"
+        material = "m"
+        element = "Q4"
+        mesh = { shape = "rectangle", min = [0.0, 1.0], max = [1.0, 1.5], cells = [4, 2] }
+        velocity = [0.05, -0.3]
+        [[body]]
+        name = "lo"
+        material = "m"
+        element = "Q4"
+        mesh = { shape = "rectangle", min = [1e-4, 0.0], max = [0.9, 1.0], cells = [4, 3] }
+    "#;
+    let mut sim = simulation(text, &[""; 0]);
+    let nodes = sim.model().parts[0].nodes();
+    let momentum = |sim: &Simulation| {
+        let mut all = vec![0.0; sim.model().dofs()];
+        sim.model().mass.multiply_into(&sim.state().v, &mut all);
+        [0, 1].map(|i| nodes.clone().map(|node| all[2 * node + i]).sum::<f64>())
+    };
+    let start = momentum(&sim);
+    let mut most: f64 = 0.0;
+    while !sim.finished() {
+        sim.advance(&mut GridReport::default()).unwrap();
+        let now = momentum(&sim);
+        let impulse = sim.state().impulses[0];
+        most = most.max(impulse[1].abs());
+        for i in 0..2 {
+            let missing = now[i] - start[i] - impulse[i];
+            assert!(missing.abs() < 1e-10 * most.max(1e-3), "{}: {missing:e}", sim.state().time);
+        }
+    }
+    assert!(most > 0.1, "{most}");
+}

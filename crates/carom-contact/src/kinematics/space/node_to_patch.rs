@@ -242,6 +242,17 @@ impl NodeToPatch {
         })
     }
 
+    /// Whether a node whose closest point on a facet is on an edge may have a pair with it: just
+    /// past the rim, where the facet continues one with this normal, or over a joint, along which
+    /// it slides from one facet to the next.
+    fn lies_on_edge(&self, facet: usize, edge: usize, normal: Vector<3>, from: Vector<3>, y: &[f64]) -> bool {
+        let patch = self.primary.patch(facet);
+        let is_beside = self.primary.is_rim(facet, edge, y)
+            && self.primary.is_smooth(facet, normal, y)
+            && patch.closest_point(y, from, PAST_SIDE).is_some();
+        is_beside || self.is_blunt(facet, (patch.corners() + edge) as u8, y)
+    }
+
     /// Facet to which a pair whose closest point lies past an edge of its facet is handed over.
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
@@ -265,21 +276,12 @@ impl NodeToPatch {
             }
             let found = self.primary.patch(facet).nearest(y, from);
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
-            let is_on = match found.at {
+            let lies_on = || match found.at {
                 Feature::Inside => true,
-                // A node just past the rim lies beside the facet there; one that slides along a
-                // joint lies on the next one.
-                Feature::Edge(edge) => {
-                    let is_beside = || {
-                        self.primary.is_rim(facet, edge, y)
-                            && self.primary.is_smooth(facet, normal, y)
-                            && self.primary.patch(facet).closest_point(y, from, PAST_SIDE).is_some()
-                    };
-                    is_beside() || self.is_blunt(facet, (patch.corners() + edge) as u8, y)
-                }
+                Feature::Edge(edge) => self.lies_on_edge(facet, edge, normal, from, y),
                 Feature::Corner(_) => false,
             };
-            if is_on && found.distance < least {
+            if found.distance < least && lies_on() {
                 best = Some((facet, found.distance, found.xi));
             }
         }
