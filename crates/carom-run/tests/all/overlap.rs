@@ -69,73 +69,78 @@ fn kept_gaps_are_the_same_after_a_resume() {
     assert_eq!(run.state(), again.state());
 }
 
+/// A block on another one, that is `by` narrower at each end, and overlaps it by 0.01.
+fn blocks(element: &str, by: f64, primary: &str, overlap: &str) -> String {
+    let in_space = element == "Hex8";
+    let [dimension, shape, cells, up, sideways] = if in_space {
+        ["3", "box", "[2, 2, 2]", "z", "\"x\", \"y\""]
+    } else {
+        ["2", "rectangle", "[4, 4]", "y", "\"x\""]
+    };
+    let corner = |x: f64, height: f64| {
+        if in_space { format!("[{x}, {x}, {height}]") } else { format!("[{x}, {height}]") }
+    };
+    format!(
+        r#"
+        dimension = {dimension}
+        material = [
+          {{ name = "a", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }},
+          {{ name = "b", law = "linear-elastic", density = 1.0, young = 300.0, poisson = 0.0 }},
+        ]
+        support = [
+          {{ on = ["lo.bottom"], fix = [{sideways}, "{up}"] }},
+          {{ on = ["up.top"], fix = [{sideways}], move = {{ {up} = "-0.001*t" }} }},
+        ]
+        contact = [{{ name = "c", secondary = "lo.top", primary = "{primary}", overlap = "{overlap}" }}]
+        time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
+        [[body]]
+        name = "lo"
+        material = "a"
+        element = "{element}"
+        mesh = {{ shape = "{shape}", min = {}, max = {}, cells = {cells} }}
+        [[body]]
+        name = "up"
+        material = "b"
+        element = "{element}"
+        mesh = {{ shape = "{shape}", min = {}, max = {}, cells = {cells} }}
+        "#,
+        corner(0.0, 0.0),
+        corner(1.0, 1.0),
+        corner(by, 0.99),
+        corner(1.0 - by, 2.5),
+    )
+}
+
+/// A block on a rigid pedestal, which is `by` narrower at each end, and overlaps it by 0.01.
+fn pedestal(by: f64, overlap: &str) -> String {
+    let left = by;
+    let right = 1.0 - by;
+    format!(
+        r#"
+        dimension = 2
+        material = [{{ name = "a", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }}]
+        support = [{{ on = ["b.top"], fix = ["x"], move = {{ y = "-0.001*t" }} }}]
+        time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
+        [[body]]
+        name = "b"
+        material = "a"
+        element = "Q4"
+        mesh = {{ shape = "rectangle", min = [0.0, -0.01], max = [1.0, 1.0], cells = [4, 4] }}
+        [[contact]]
+        name = "c"
+        secondary = "b.bottom"
+        primary = {{ polyline = {{ points = [[{right}, -1.0], [{right}, 0.0], [{left}, 0.0], [{left}, -1.0]] }} }}
+        overlap = "{overlap}"
+        "#
+    )
+}
+
 /// A block presses on another one, or on a rigid pedestal, of its own width or somewhat narrower or
 /// wider, that it overlaps. The corner of the narrower one is nearer to the wall of the other than
 /// it is deep, and pressed by the face below all the same: the stress is uniform but for the part
 /// beyond the corner, which is 0.2 % of the width.
 #[test]
 fn corners_near_a_wall_keep_the_depth_below_the_face() {
-    let blocks = |element: &str, by: f64, primary: &str, overlap: &str| {
-        let depth = if element == "Hex8" { 3 } else { 2 };
-        let low = |x: f64, top: f64| match depth {
-            3 => format!("[{x}, {x}, {top}]"),
-            _ => format!("[{x}, {top}]"),
-        };
-        let cells = ["[4, 4]", "[2, 2, 2]"][depth - 2];
-        let vertical = ["y", "z"][depth - 2];
-        let sideways = ["\"x\"", "\"x\", \"y\""][depth - 2];
-        let shape = ["rectangle", "box"][depth - 2];
-        format!(
-            r#"
-            dimension = {depth}
-            material = [
-              {{ name = "a", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }},
-              {{ name = "b", law = "linear-elastic", density = 1.0, young = 300.0, poisson = 0.0 }},
-            ]
-            support = [
-              {{ on = ["lo.bottom"], fix = [{sideways}, "{vertical}"] }},
-              {{ on = ["up.top"], fix = [{sideways}], move = {{ {vertical} = "-0.001*t" }} }},
-            ]
-            contact = [{{ name = "c", secondary = "lo.top", primary = "{primary}", overlap = "{overlap}" }}]
-            time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
-            [[body]]
-            name = "lo"
-            material = "a"
-            element = "{element}"
-            mesh = {{ shape = "{shape}", min = {}, max = {}, cells = {cells} }}
-            [[body]]
-            name = "up"
-            material = "b"
-            element = "{element}"
-            mesh = {{ shape = "{shape}", min = {}, max = {}, cells = {cells} }}
-            "#,
-            low(0.0, 0.0),
-            low(1.0, 1.0),
-            low(by, 0.99),
-            low(1.0 - by, 2.5),
-        )
-    };
-    let pedestal = |by: f64, overlap: &str| {
-        let [left, right] = [by, 1.0 - by];
-        format!(
-            r#"
-            dimension = 2
-            material = [{{ name = "a", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }}]
-            support = [{{ on = ["b.top"], fix = ["x"], move = {{ y = "-0.001*t" }} }}]
-            time = {{ end = 1.0, step = 1.0, scheme = {{ kind = "static" }} }}
-            [[body]]
-            name = "b"
-            material = "a"
-            element = "Q4"
-            mesh = {{ shape = "rectangle", min = [0.0, -0.01], max = [1.0, 1.0], cells = [4, 4] }}
-            [[contact]]
-            name = "c"
-            secondary = "b.bottom"
-            primary = {{ polyline = {{ points = [[{right}, -1.0], [{right}, 0.0], [{left}, 0.0], [{left}, -1.0]] }} }}
-            overlap = "{overlap}"
-            "#
-        )
-    };
     let force = |case: &str| {
         let end = finish(simulation(case, &[""; 0]));
         let d = end.model().dimension;

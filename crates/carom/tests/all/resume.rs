@@ -101,9 +101,12 @@ fn twenty_kills_leave_the_same_bytes() {
                 break;
             }
             // The first kill comes at once; the others are spread so that about twenty fit into one
-            // run.
+            // run, from where there is a directory: a busy machine starts a program late.
             let delay = if kills == 0 { Duration::ZERO } else { wall.mul_f64(0.15 * random(&mut seed)) };
             let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            while kills > 0 && !place.0.join(&out).exists() && child.try_wait().unwrap().is_none() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
             std::thread::sleep(delay);
             if let Some(status) = child.try_wait().unwrap() {
                 assert_eq!(status.code(), Some(0));
