@@ -78,7 +78,8 @@ pub struct Constraints {
     pub dropped: Vec<((usize, usize), Along)>,
     /// Contact and pair of closed gaps that depend on these rows, and have no multiplier.
     pub dependent: Vec<(usize, usize)>,
-    /// The same of single nodes beside a field of pressure, which presses in their place.
+    /// Contact and pair of closed gaps of single nodes beside a field of pressure, which presses in
+    /// their place: they depend on these rows but for a hundredth, and have no multiplier.
     pub covered: Vec<(usize, usize)>,
 }
 
