@@ -170,6 +170,46 @@ fn a_node_that_slides_is_handed_over_and_leaves_at_the_end() {
     assert_eq!(facets, [Some(3), Some(3), Some(5), None]);
 }
 
+/// An L-shaped plate in the plane z = 0: three unit squares of two triangles each, divided along one
+/// diagonal or the other; its nodes begin at 1.
+fn bracket(is_falling: bool) -> (Boundary, Vec<f64>) {
+    let mut y = vec![0.0; 3];
+    for k in 0..9 {
+        y.extend([f64::from(k % 3), f64::from(k / 3), 0.0]);
+    }
+    let mut facets = Vec::new();
+    for lowest in [1, 2, 4] {
+        let [a, b, c, d] = [lowest, lowest + 1, lowest + 4, lowest + 3];
+        facets.extend(if is_falling {
+            [vec![a, b, d], vec![b, c, d]]
+        } else {
+            [vec![a, b, c], vec![a, c, d]]
+        });
+    }
+    (Boundary::new(FacetShape::T3, &facets, &[], 0), y)
+}
+
+#[test]
+fn nodes_meet_a_plate_above_it_and_nothing_beside_it() {
+    for is_falling in [false, true] {
+        let (surface, y) = bracket(is_falling);
+        let contact = NodeToPatch::new(vec![0], surface);
+        let at = |x: f64, z: f64, height: f64| {
+            let mut y = y.clone();
+            y[..3].copy_from_slice(&[x, z, height]);
+            y
+        };
+        for k in 0..576 {
+            let [x, z] = [k % 24, k / 24].map(|i| 0.1 * f64::from(i) - 0.155);
+            let within = [x, z, 2.0 - x.max(z), 1.0 - x.min(z)].into_iter().fold(f64::INFINITY, f64::min);
+            let mut pairing = Pairing::default();
+            let before = at(x, z, 1e-3);
+            contact.search(&before, &at(x, z, -1e-3), &mut pairing, &mut Vec::new());
+            assert_eq!(pairing.pairs.len(), usize::from(within > 0.0), "{is_falling} {x} {z}");
+        }
+    }
+}
+
 #[test]
 fn a_node_that_crosses_a_thin_body_in_one_step_is_found() {
     let (surface, y) = strip(2, |_| 0.0);

@@ -206,6 +206,58 @@ impl Boundary {
         aside.hypot(if is_past { (share - s) * along.norm() } else { 0.0 })
     }
 
+    /// Whether another side follows across an edge of a facet, with which another contact keeps the
+    /// same nodes out.
+    pub(super) fn meets_sibling(&self, facet: usize, edge: usize) -> bool {
+        self.across(facet, edge).is_some_and(|next| self.is_of_sibling(next))
+    }
+
+    /// Whether no blunt joint with another facet of the side follows across an edge of a facet.
+    pub(super) fn ends_at(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
+        self.across(facet, edge).is_none_or(|next| {
+            !self.is_mirror(next) && (!self.is_of_side(next) || self.is_sharp(facet, edge, y))
+        })
+    }
+
+    /// Whether a point past the edges of a facet lies past the end of the smooth surface around it, by
+    /// more than a tolerance relative to the length of a facet. The facet itself may have a corner
+    /// there, but no edge.
+    pub(super) fn is_past_rim(&self, facet: usize, point: Vector<3>, tolerance: f64, y: &[f64]) -> bool {
+        let normal = self.middle(facet, y).normal;
+        let is_of_surface = |other: usize| {
+            self.is_of_side(other) && !self.is_mirror(other) && self.is_smooth(other, normal, y)
+        };
+        let around = self.ring(facet).iter().copied().filter(|&other| is_of_surface(other));
+        let mut nearest = (facet, self.patch(facet).nearest(y, point));
+        for other in around {
+            let found = self.patch(other).nearest(y, point);
+            if found.distance < nearest.1.distance {
+                nearest = (other, found);
+            }
+        }
+        let (facet, found) = nearest;
+        let is_beyond = |edge: usize| {
+            let within = if self.meets_sibling(facet, edge) { 0.0 } else { tolerance };
+            self.ends_at(facet, edge, y) && found.distance > within * self.length(facet, y)
+        };
+        match found.at {
+            Feature::Inside => false,
+            Feature::Edge(edge) => is_beyond(edge),
+            Feature::Corner(corner) => {
+                let node = self.patch(facet).nodes[corner];
+                let meets = |other: usize, edge: usize| {
+                    let nodes = self.patch(other).nodes;
+                    [nodes[edge], nodes[(edge + 1) % self.shape.corners()]].contains(&node)
+                };
+                let ends = |other: usize| {
+                    (0..self.shape.corners()).any(|edge| meets(other, edge) && self.ends_at(other, edge, y))
+                };
+                found.distance > tolerance * self.length(facet, y)
+                    && self.around(facet, corner).iter().any(|&other| is_of_surface(other) && ends(other))
+            }
+        }
+    }
+
     /// Whether the joint at an edge of a facet ends at its corner, s = 0 or 1, where no other facet
     /// continues the smooth surface.
     fn ends_at_rim(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> bool {

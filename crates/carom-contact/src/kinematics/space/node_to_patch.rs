@@ -225,21 +225,17 @@ impl NodeToPatch {
         self.is_past_end(facet, xi, PAST_SIDE, y)
     }
 
-    /// Whether ξ lies past an edge of a facet at which no blunt joint with another facet of the
-    /// side follows, by more than a tolerance.
+    /// Whether ξ lies, by more than a tolerance, past an edge of a facet at which no blunt joint with
+    /// another facet of the side follows, or past the end of the facets around it.
     pub(super) fn is_past_end(&self, facet: usize, xi: [f64; 2], tolerance: f64, y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
-        (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
-            beyond > PAST
-                && match self.primary.across(facet, edge) {
-                    Some(next) if self.primary.is_mirror(next) => false,
-                    Some(next) if self.primary.is_of_sibling(next) => true,
-                    Some(next) if self.primary.is_of_side(next) => {
-                        beyond > tolerance && self.primary.is_sharp(facet, edge, y)
-                    }
-                    _ => beyond > tolerance,
-                }
-        })
+        let mut past =
+            (0..patch.corners()).zip(patch.beyond(xi)).filter(|(_, beyond)| *beyond > PAST).peekable();
+        past.peek().is_some()
+            && (past.any(|(edge, beyond)| {
+                let is_within = beyond <= tolerance && !self.primary.meets_sibling(facet, edge);
+                !is_within && self.primary.ends_at(facet, edge, y)
+            }) || self.primary.is_past_rim(facet, patch.at(y, xi).position, tolerance, y))
     }
 
     /// Whether a node whose closest point on a facet is on an edge may have a pair with it: just
