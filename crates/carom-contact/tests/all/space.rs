@@ -170,8 +170,8 @@ fn a_node_that_slides_is_handed_over_and_leaves_at_the_end() {
     assert_eq!(facets, [Some(3), Some(3), Some(5), None]);
 }
 
-/// An L-shaped plate in the plane z = 0: three unit squares of two triangles each, divided along one
-/// diagonal or the other; its nodes begin at 1.
+/// An L-shaped plate in the plane z = 0: three unit squares of two triangles each, divided along
+/// one diagonal or the other; its nodes begin at 1.
 fn bracket(is_falling: bool) -> (Boundary, Vec<f64>) {
     let mut y = vec![0.0; 3];
     for k in 0..9 {

@@ -219,9 +219,9 @@ impl Boundary {
         })
     }
 
-    /// Whether a point past the edges of a facet lies past the end of the smooth surface around it, by
-    /// more than a tolerance relative to the length of a facet. The facet itself may have a corner
-    /// there, but no edge.
+    /// Whether a point past the edges of a facet lies past the end of the smooth surface around it,
+    /// by more than a tolerance relative to the length of a facet. The facet itself may have a
+    /// corner there, but no edge.
     pub(super) fn is_past_rim(&self, facet: usize, point: Vector<3>, tolerance: f64, y: &[f64]) -> bool {
         let normal = self.middle(facet, y).normal;
         let is_of_surface = |other: usize| {

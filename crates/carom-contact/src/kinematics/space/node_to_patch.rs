@@ -225,8 +225,8 @@ impl NodeToPatch {
         self.is_past_end(facet, xi, PAST_SIDE, y)
     }
 
-    /// Whether ξ lies, by more than a tolerance, past an edge of a facet at which no blunt joint with
-    /// another facet of the side follows, or past the end of the facets around it.
+    /// Whether ξ lies, by more than a tolerance, past an edge of a facet at which no blunt joint
+    /// with another facet of the side follows, or past the end of the facets around it.
     pub(super) fn is_past_end(&self, facet: usize, xi: [f64; 2], tolerance: f64, y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         let mut past =
