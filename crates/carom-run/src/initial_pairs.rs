@@ -3,8 +3,8 @@
 //! A contact goes on where the other run has one of the same kind on the same sides, whatever its
 //! name and wherever its obstacle stands: one that has moved goes on from another place, and of its
 //! pairs those are closed that touch. Where the other run pressed by springs and this one does not,
-//! or the reverse, or by the other method, nodes that touch are found anew: pairs of springs are
-//! nearly always dependent as constraints.
+//! or the reverse, or by the other method, or the same bodies on other sides, nodes that touch are
+//! found anew: pairs of springs are nearly always dependent as constraints.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -47,9 +47,11 @@ pub(crate) fn found(
     let before = counterparts(case, model, y, old, state);
     for (own, (spec, contact)) in case.contacts.iter().zip(&model.contacts).enumerate() {
         let Some(before) = before[own] else {
-            found.pairs.push(Vec::new());
-            let met = old.contacts.iter().any(|other| have_the_same_bodies(other, spec));
-            found.left.push(if met { left_by_another(spec) } else { DEEP });
+            let met = |&(_, other): &(usize, &ContactSpec)| have_the_same_bodies(other, spec);
+            let mut met = old.contacts.iter().enumerate().filter(met).peekable();
+            found.left.push(if met.peek().is_some() { left_by_another(spec) } else { DEEP });
+            let pressed = met.any(|(k, _)| state.pairs.get(k).is_some_and(|pairs| is_pressed(pairs)));
+            found.pairs.push(if pressed { touching(model, contact, y) } else { Vec::new() });
             continue;
         };
         let pressed = state.pairs.get(before).map_or(&[][..], Vec::as_slice);
@@ -67,7 +69,7 @@ pub(crate) fn found(
             pressed.to_vec()
         } else if goes_on {
             still_closed(model, contact, y, pressed)
-        } else if pressed.iter().any(|pair| pair.active) {
+        } else if is_pressed(pressed) {
             touching(model, contact, y)
         } else {
             Vec::new()
@@ -79,6 +81,10 @@ pub(crate) fn found(
         found.pairs.push(pairs);
     }
     found
+}
+
+fn is_pressed(pairs: &[Pair]) -> bool {
+    pairs.iter().any(|pair| pair.active)
 }
 
 /// For each contact that of the other run which goes on in it: of those that are alike one of the
@@ -116,6 +122,9 @@ fn is_alike(old: &ContactSpec, new: &ContactSpec) -> bool {
         }
         (PrimarySpec::Polyline { points, .. }, PrimarySpec::Polyline { points: others, .. }) => {
             points.len() == others.len()
+        }
+        (PrimarySpec::Surface(old), PrimarySpec::Surface(new)) => {
+            [old.triangles, old.rim, old.inner] == [new.triangles, new.rim, new.inner]
         }
         (old, new) => old == new,
     };

@@ -9,9 +9,9 @@
 //!
 //! (I. Newton, *Principia*, 1687, scholium to the laws of motion.) n is the direction of the normal
 //! contact impulse on the striker, without that of friction. A fixed obstacle has no velocity; one
-//! that moves has that of its point at the mean place Σ λ x/Σ λ of those rows; and a body has that
-//! of its centre of mass, but along an axis in which a support holds or moves it, that of the
-//! support: what its centre does there is vibration.
+//! that moves has that of its point at c + Σ λ (x − c)/Σ λ over those rows, with its centre c in
+//! each of them; and a body has that of its centre of mass, but along an axis in which a support
+//! holds or moves it, that of the support: what its centre does there is vibration.
 
 use carom_formula::Formula;
 
@@ -40,12 +40,32 @@ pub struct Impact<'a> {
     pub others: Vec<Party<'a>>,
     /// Direction of the normal contact impulse on the striker, of length 1.
     pub normal: [f64; 3],
-    /// Mean place of the contact, weighted with its impulse.
-    pub place: [f64; 3],
+    /// Mean place of the contact relative to the centre of each of them, weighted with its impulse;
+    /// a body's is not used.
+    pub arms: Vec<[f64; 3]>,
     /// −w⁻·n, > 0: with this velocity the striker approaches.
     pub approach: f64,
     /// w⁺·n; none if the episode has not ended.
     pub separation: Option<f64>,
+}
+
+/// Forces times places relative to a centre.
+#[derive(Default)]
+struct Moment {
+    sum: [f64; 3],
+    weight: f64,
+}
+
+impl Moment {
+    fn add(&mut self, weight: f64, place: [f64; 3], center: impl Fn(usize) -> f64) {
+        (0..3).for_each(|i| self.sum[i] += weight * (place[i] - center(i)));
+        self.weight += weight;
+    }
+
+    /// Mean place relative to the centre.
+    fn arm(&self) -> [f64; 3] {
+        self.sum.map(|sum| sum / self.weight)
+    }
 }
 
 impl<'a> Impact<'a> {
@@ -84,7 +104,7 @@ impl<'a> Impact<'a> {
         if is_approach { Ok(impact) } else { Err("the bodies did not approach each other before contact") }
     }
 
-    /// The parties that a striker strikes in an episode, with direction and place of the normal
+    /// The parties that a striker strikes in an episode, with direction and places of the normal
     /// impulse on it; none if it strikes nothing but itself.
     fn of(striker: &'a str, run: &'a Run, episode: Episode) -> Option<Self> {
         let times = run.times();
@@ -92,8 +112,7 @@ impl<'a> Impact<'a> {
             |time: f64| times[episode.start] <= time && episode.end.is_none_or(|end| time < times[end]);
         let mut others = Vec::new();
         let mut impulse = [0.0; 3];
-        let mut moment = [0.0; 3];
-        let mut weight = 0.0;
+        let mut moments = Vec::<Moment>::new();
         for row in run.contact.iter().filter(|row| is_in(row.time)) {
             let Some([secondary, primary]) = parties(run, &row.contact) else { continue };
             let (other, sign) = match [secondary, primary].map(|party| party == Some(striker)) {
@@ -101,21 +120,24 @@ impl<'a> Impact<'a> {
                 [false, true] => (secondary, 1.0),
                 _ => continue,
             };
-            if !others.contains(&other) {
+            let known = others.iter().position(|known| *known == other);
+            let which = known.unwrap_or(others.len());
+            if known.is_none() {
                 others.push(other);
+                moments.push(Moment::default());
             }
-            weight += row.multiplier;
-            for i in 0..3 {
-                impulse[i] += sign * row.multiplier * row.normal[i];
-                moment[i] += row.multiplier * row.point[i];
-            }
+            let at = times.partition_point(|time| *time < row.time);
+            let center = other.map_or(Vec::new(), |other| vector(&run.history, &format!("{other}.center")));
+            moments[which].add(row.multiplier, row.point, |i| center.get(i).map_or(0.0, |center| center[at]));
+            (0..3).for_each(|i| impulse[i] += sign * row.multiplier * row.normal[i]);
         }
         let length = impulse.iter().fold(0.0, |length, x| f64::hypot(length, *x));
-        (length > 0.0 && weight != 0.0).then(|| Self {
+        let acts = |moments: &[Moment]| moments.iter().all(|moment| moment.weight != 0.0);
+        (length > 0.0 && acts(&moments)).then(|| Self {
             striker,
             others,
             normal: impulse.map(|x| x / length),
-            place: moment.map(|x| x / weight),
+            arms: moments.iter().map(Moment::arm).collect(),
             approach: 0.0,
             separation: None,
         })
@@ -127,7 +149,9 @@ impl<'a> Impact<'a> {
         let axes = vector(&run.history, "contact_force").len();
         let Some(name) = party else { return Some(vec![0.0; axes]) };
         let of_center = velocities(&run.history, name).into_iter().map(|v| v[row]);
-        let turning = turning(run, name, self.place, row)?;
+        let which = self.others.iter().position(|other| *other == party);
+        let arm = which.map_or([0.0; 3], |which| self.arms[which]);
+        let turning = turning(run, name, arm, row)?;
         let prescribed = prescribed(run, name, run.times()[row])?;
         let held = of_center.zip(prescribed).map(|(v, held)| held.unwrap_or(v));
         Some(held.zip(turning).map(|(v, turning)| v + turning).collect())
@@ -212,14 +236,12 @@ fn velocities<'a>(history: &'a History, party: &str) -> Vec<&'a [f64]> {
     vector(history, &format!("{party}.velocity"))
 }
 
-/// Velocity, beyond that of its centre, of a point of an obstacle that turns: ω × (x − centre).
-/// None if the rate of its rotation is unknown.
-fn turning(run: &Run, contact: &str, place: [f64; 3], row: usize) -> Option<[f64; 3]> {
+/// Velocity, beyond that of its centre, of a point of an obstacle that turns: ω × arm, with the arm
+/// from the centre to the point. None if the rate of its rotation is unknown.
+fn turning(run: &Run, contact: &str, arm: [f64; 3], row: usize) -> Option<[f64; 3]> {
     let spec = run.manifest.facts.contacts.iter().find(|spec| spec.name == contact);
     let Some(turns) = spec.and_then(|spec| spec.turns.as_ref()) else { return Some([0.0; 3]) };
     let rate = rate(&turns.angle, run.times()[row])?.to_radians();
-    let center = vector(&run.history, &format!("{contact}.center"));
-    let arm: [f64; 3] = std::array::from_fn(|i| center.get(i).map_or(0.0, |center| place[i] - center[row]));
     let length = turns.axis.iter().fold(0.0, |length, x| f64::hypot(length, *x));
     Some(std::array::from_fn(|i| {
         let j = (i + 1) % 3;

@@ -5,6 +5,7 @@ use carom_run::Setup;
 use super::common::{case, finish, simulation};
 use super::loads::time;
 use super::restart::initial_state;
+use super::space_obstacles::{grid, stl};
 
 /// A block whose upper and right sides are held, with these contacts.
 fn block(contacts: &str, time: &str, initial: &str) -> String {
@@ -60,6 +61,57 @@ fn a_contact_goes_on_at_another_place() {
                 assert!(apart < 1e-6 * force[1], "{enforcement} {scheme}: {now:?} {force:?}");
                 run.step().unwrap();
             }
+        }
+    }
+}
+
+/// A block in space whose lower side is held, under a plate of triangles.
+fn under_plate(side: &str, file: &str, rest: &str) -> String {
+    format!(
+        r#"
+dimension = 3
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 200.0, poisson = 0.3 }}]
+[[body]]
+name = "block"
+material = "m"
+element = "Hex8"
+mesh = {{ shape = "box", min = [0.0, 0.0, 0.0], max = [1.0, 0.9, 0.5], cells = [3, 3, 2] }}
+[[support]]
+on = ["block.bottom"]
+fix = ["x", "y", "z"]
+[[contact]]
+name = "press"
+secondary = "{side}"
+mu = 0.3
+primary = {{ surface = {{ file = {file:?}, reverse = true }}{rest}
+"#
+    )
+}
+
+/// A block that a plate of triangles has pressed stays as it is under the same plate, read where it
+/// has moved to, also where the contact names another side of the block.
+#[test]
+fn a_contact_goes_on_below_a_surface_at_another_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, height: f64| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, stl(&grid(2.0, 3, |_, _| height))).unwrap();
+        path.display().to_string()
+    };
+    let motion = ", motion = { x = \"0.002*t\", z = \"-0.05*t\" } }\n";
+    let above = file("above.stl", 0.5);
+    let load = under_plate("block.top", &above, motion) + &time(1.0, 0.1, r#"{ kind = "static" }"#);
+    let initial = initial_state(&load, &folder.path().join("pressed"));
+    let force = finish(simulation(&load, &[""; 0])).state().contact_forces[0];
+    assert!(force[2] < -10.0, "{force:?}");
+    let below = file("below.stl", 0.45);
+    for side in ["block.top", "block.skin"] {
+        let scheme = time(0.05, 0.01, r#"{ kind = "newmark", beta = 0.25, gamma = 0.5 }"#);
+        let mut run = simulation(&(under_plate(side, &below, " }\n") + &scheme + &initial), &[""; 0]);
+        for _ in 0..3 {
+            let now = run.state().contact_forces[0];
+            assert!((now[2] / force[2] - 1.0).abs() < 1e-6, "{side}: {now:?} {force:?}");
+            run.step().unwrap();
         }
     }
 }

@@ -220,6 +220,25 @@ fn an_obstacle_that_turns_has_its_velocity_at_the_contact() {
     assert!((swung / moved - 1.0).abs() < 1e-3, "{swung} {moved}");
 }
 
+/// A bat that turns about a point which travels, with all else, at V.
+#[test]
+fn a_bat_strikes_alike_in_every_frame() {
+    let seen = |speed: f64| {
+        let primary = format!(
+            r#"contact.floor.primary={{ polyline = {{ points = [[1, -0.1], [1, 0], [-1, 0], [-1, -0.1]], radius = 0 }}, motion = {{ x = "{speed:?}*t", rotate = "180/pi*t", about = [-0.9, 0] }} }}"#
+        );
+        let velocity = format!("body.disc.velocity=[{speed:?}, 0]");
+        let place = "body.disc.mesh.center=[0.1, 0.32]";
+        let run = record(PLANE, &[&primary, &velocity, place, "time.end=0.6"]);
+        ["restitution", "turning_time"].map(|name| value(&run, name).unwrap())
+    };
+    let at_rest = seen(0.0);
+    for found in [seen(-3.0), seen(5.0)] {
+        let error = found.iter().zip(at_rest).map(|(found, at_rest)| (found / at_rest - 1.0).abs());
+        assert!(error.fold(0.0, f64::max) < 1e-8, "{found:?} {at_rest:?}");
+    }
+}
+
 /// Three bars in a row: metrics of the contact force do not depend on which sides are secondary,
 /// and those of the impulse, which is that of no body, are not available.
 #[test]

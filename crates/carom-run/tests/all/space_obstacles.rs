@@ -164,7 +164,7 @@ fn a_cylinder_without_friction_changes_neither_motion_along_nor_about_its_axis()
 }
 
 /// Triangles as a text in STL.
-fn stl(triangles: &[[[f64; 3]; 3]]) -> String {
+pub(super) fn stl(triangles: &[[[f64; 3]; 3]]) -> String {
     let mut text = "solid test\n".to_owned();
     for triangle in triangles {
         text.push_str("facet normal 0 0 0\nouter loop\n");
@@ -184,7 +184,7 @@ fn on_surface(triangles: &[[[f64; 3]; 3]], rest: &str, law: &str) -> Simulation 
 }
 
 /// A grid of triangles over the square |x|, |y| ≤ size, at a height.
-fn grid(size: f64, count: usize, height: impl Fn(f64, f64) -> f64) -> Vec<[[f64; 3]; 3]> {
+pub(super) fn grid(size: f64, count: usize, height: impl Fn(f64, f64) -> f64) -> Vec<[[f64; 3]; 3]> {
     let at = |i: usize, k: usize| {
         let [x, y] = [i, k].map(|i| size * (2.0 * i as f64 / count as f64 - 1.0));
         [x, y, height(x, y)]
