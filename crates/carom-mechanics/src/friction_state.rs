@@ -1,6 +1,7 @@
 //! Friction in a state, between steps: the slips of the pairs, which a solved step adds to, the
 //! tractions q along H(y_s), and what pairs with friction did. About the normal, tangents of
-//! springs turn with the facet at the end of the step, by its least-squares rotation in it.
+//! springs turn with the facet, or with the simplex of a rigid obstacle, at the end of the step, by
+//! its least-squares rotation in it.
 
 use std::borrow::Cow;
 
@@ -55,7 +56,7 @@ pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut
                 }
                 pair.tangential.before = pair.tangential.traction;
                 if equations.model.dimension == 3 && equations.stick_spring(k, pair).is_some() {
-                    turn_with_facet(contact, pair, [&equations.state.y, &solved.y]);
+                    turn_with_primary(contact, pair, [&equations.state.y, &solved.y]);
                 }
             } else {
                 pair.tangential = Tangential::default();
@@ -64,10 +65,10 @@ pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut
     }
 }
 
-/// Turns the tangents of a pair about the normal with its facet, which a rigid obstacle does not
-/// have.
-fn turn_with_facet(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2]) {
-    let nodes = contact.kinematics.facet_nodes(pair);
+/// Turns the tangents of a pair about the normal with its facet, or with a rigid obstacle; one that
+/// is fixed has no nodes.
+fn turn_with_primary(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2]) {
+    let nodes = contact.kinematics.nodes_of_rotation(pair);
     if nodes.is_empty() {
         return;
     }

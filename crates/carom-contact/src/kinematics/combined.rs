@@ -157,6 +157,11 @@ impl Kinematics for Combined {
         part.facet_nodes(&pair)
     }
 
+    fn nodes_of_rotation(&self, pair: &Pair) -> &[usize] {
+        let (part, pair) = self.of_pair(pair);
+        part.nodes_of_rotation(&pair)
+    }
+
     fn is_on_facet(&self, pair: &Pair) -> bool {
         let (part, pair) = self.of_pair(pair);
         part.is_on_facet(&pair)

@@ -124,6 +124,12 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
+    /// Global numbers of the nodes with which the tangents of a pair turn about its normal: those of
+    /// its facet, or of the simplex that carries a rigid primary.
+    fn nodes_of_rotation(&self, pair: &Pair) -> &[usize] {
+        self.facet_nodes(pair)
+    }
+
     /// Whether the contact point of a pair lies on its facet, not on its extension.
     fn is_on_facet(&self, pair: &Pair) -> bool {
         pair.xi.abs() <= 1.0

@@ -284,6 +284,10 @@ impl Kinematics for NodeToObstacle {
         &[]
     }
 
+    fn nodes_of_rotation(&self, _: &Pair) -> &[usize] {
+        self.carriers()
+    }
+
     fn facets(&self, _: usize) -> usize {
         self.shape.pieces()
     }

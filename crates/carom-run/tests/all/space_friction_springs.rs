@@ -108,8 +108,8 @@ fn springs_in_space_obey_the_law_and_keep_the_balance() {
     }
 }
 
-/// Two blocks, sheared against each other and pressed, turn about the normal of their interface:
-/// the stretch of the springs turns with them.
+/// A block, sheared against another one or a rigid plane and pressed, turns together with it about
+/// the normal of their interface: the stretch of the springs turns with them.
 #[test]
 fn springs_turn_with_the_bodies() {
     let text = r#"
@@ -129,17 +129,23 @@ newton = { tolerance = 1e-12 }
 "#;
     // Pressed until 1, sheared until 2, and turned by 90° until 4.
     let text = text.replace("(w)", "(max(t - 2, 0)*pi/4)").replace("s*", "0.002*max(0, min(t - 1, 1))*");
-    let mut sim = simulation(&text, &[] as &[&str]);
-    let mut at = |time: f64| {
-        while sim.state().time < time - 1e-9 {
-            sim.advance(&mut GridReport::default()).unwrap();
-        }
-        sim.state().contact_forces[0]
-    };
-    let (start, end) = (at(2.0), at(4.0));
-    assert!(start[0].abs() > 0.05 * start[2].abs() && start[1].abs() < 1e-9, "{start:?}");
-    // From x to y.
-    let size = start[0].abs();
-    assert!((end[1] - start[0]).abs() < 1e-2 * size && end[0].abs() < 2e-2 * size, "{start:?} {end:?}");
-    assert!((end[2] / start[2] - 1.0).abs() < 1e-3, "{start:?} {end:?}");
+    let plane = "{ plane = { point = [0, 0, 0], normal = [0, 0, 1] }, motion = { rotate = \"45*max(t - 2, 0)\", about = [0, 0, -1], axis = [0, 0, 1] } }";
+    let on_plane = format!("contact.strike.primary={plane}");
+    let lower = "body.lower.mesh.max=[0.5, 0.5, -0.2]";
+    for sets in [vec![], vec![on_plane.as_str(), lower]] {
+        let mut sim = simulation(&text, &sets);
+        let mut at = |time: f64| {
+            while sim.state().time < time - 1e-9 {
+                sim.advance(&mut GridReport::default()).unwrap();
+            }
+            sim.state().contact_forces[0]
+        };
+        let start = at(2.0);
+        let end = at(4.0);
+        assert!(start[0].abs() > 0.05 * start[2].abs() && start[1].abs() < 1e-9, "{start:?}");
+        // From x to y.
+        let size = start[0].abs();
+        assert!((end[1] - start[0]).abs() < 1e-2 * size && end[0].abs() < 2e-2 * size, "{start:?} {end:?}");
+        assert!((end[2] / start[2] - 1.0).abs() < 1e-3, "{start:?} {end:?}");
+    }
 }
