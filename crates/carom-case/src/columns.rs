@@ -122,7 +122,7 @@ impl<'a> Recorded<'a> {
         columns.vector("momentum", &label.momentum, "momentum of all bodies");
         let unit = &label.angular_momentum;
         columns.rotational("angular_momentum", unit, "angular momentum about the origin");
-        let what = "contact force on the secondary sides at the end of the step";
+        let what = "contact force on the secondary sides at the end of the step; with energy-momentum its mean over the step";
         columns.vector("contact_force", &label.force, what);
         let what = "time integral of the contact force, including projections";
         columns.vector("contact_impulse", &label.momentum, what);

@@ -53,6 +53,16 @@ impl Bounds {
         self
     }
 
+    /// Translated by a vector.
+    #[must_use]
+    pub fn moved(mut self, by: [f64; 3]) -> Self {
+        for (i, by) in by.into_iter().enumerate() {
+            self.low[i] += by;
+            self.high[i] += by;
+        }
+        self
+    }
+
     /// Whether the boxes have a point in common, possibly on their boundaries. An empty box meets
     /// none.
     #[must_use]

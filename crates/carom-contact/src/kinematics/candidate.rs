@@ -1,6 +1,8 @@
 //! The facet that a node without a pair may have reached in a step: the first one that its path
 //! crosses, else the closest one that it was not behind before.
 
+use carom_algebra::Vector;
+
 use super::facets::{Facets, OnFacet};
 use super::facing::{Closest, NEAR_END, REACH, Reached};
 use super::joint::AT_JOINT;
@@ -104,7 +106,8 @@ impl NodeToFacet {
         if allowed > 0.0 {
             // It may be inside, and is no candidate before it is too deep, or has moved too far to
             // tell from its end alone.
-            let moved = (now.at(node) - before.at(node)).norm();
+            let end = Vector(tools.search.drift().seen(1.0, &now.at(node).0));
+            let moved = (Vector([end[0], end[1]]) - before.at(node)).norm();
             if moved < allowed && closest.is_none_or(|c| c.gap + slack >= 0.0) {
                 return None;
             }

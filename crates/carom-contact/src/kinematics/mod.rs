@@ -8,6 +8,7 @@ pub mod apart;
 mod candidate;
 mod carrier;
 mod combined;
+mod drift;
 mod facet_rows;
 #[doc(hidden)]
 pub mod facets;
@@ -124,8 +125,8 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
-    /// Global numbers of the nodes with which the tangents of a pair turn about its normal: those of
-    /// its facet, or of the simplex that carries a rigid primary.
+    /// Global numbers of the nodes with which the tangents of a pair turn about its normal: those
+    /// of its facet, or of the simplex that carries a rigid primary.
     fn nodes_of_rotation(&self, pair: &Pair) -> &[usize] {
         self.facet_nodes(pair)
     }

@@ -20,10 +20,10 @@ use super::folds::{Folds, Side, Turns};
 use super::hand_over::{Held, Next, Sliding};
 use super::joint::OnFacets;
 use super::opposed::is_left;
-use super::passed::{Passed, Paths};
+use super::passed::{Boxes, Passed, Paths};
 use super::reversed::{Corners, Faced};
 use super::rounding::rounding;
-use super::surface::{Search, Surface, path};
+use super::surface::{Search, Surface};
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
@@ -431,8 +431,9 @@ impl Kinematics for NodeToFacet {
         if !search.update(&self.primary, &self.secondary, 0.0, start, end) {
             return None;
         }
-        let of_node = |node: usize| path([start, end].map(|y| y.coordinates(node)));
-        paths.deepest(motion, [before, now], search.tree(), of_node, |facet, ends, _, node| {
+        let of_node = |node: usize| search.path(node, start, end);
+        let boxes = Boxes { tree: search.tree(), drift: search.drift(), of_node: &of_node };
+        paths.deepest(motion, [before, now], boxes, |facet, ends, _, node| {
             let [from, to] = ends.map(|y| self.places(y));
             let met = crossing(swept, self.primary.facet(facet), from, to, node)?;
             Some(Met { theta: met.theta, facet, xi: [met.xi, 0.0] })

@@ -8,6 +8,7 @@
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Tree};
 
+use super::drift::Drift;
 use super::facets::Facets;
 use super::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through};
 
@@ -37,6 +38,17 @@ pub(super) struct Paths<'a, B> {
     pub bounds: &'a dyn Fn(usize, usize) -> bool,
     /// Allowed depth of a node that leaves where it entered, over the length of a facet.
     pub bounce: f64,
+}
+
+/// Boxes of the paths of facets and nodes in a step.
+#[derive(Clone, Copy)]
+pub(super) struct Boxes<'a> {
+    /// Those of the facets.
+    pub tree: &'a Tree,
+    /// Their frame.
+    pub drift: Drift,
+    /// That of a node.
+    pub of_node: &'a dyn Fn(usize) -> Bounds,
 }
 
 /// Largest motion of the nodes of a body in a step, and the length of its shortest facet.
@@ -72,15 +84,13 @@ impl<B> Paths<'_, B> {
         most > 2.0 * SHARE * self.boundary.length(facet, ends[0])
     }
 
-    /// The node that was deepest beyond its limit, if any. `tree`: boxes of the paths of the
-    /// facets; `path`: box of the path of a node; `crossing`: where a node first crosses a facet,
-    /// up to a given instant.
+    /// The node that was deepest beyond its limit, if any. `crossing`: where a node first crosses a
+    /// facet, up to a given instant.
     pub(super) fn deepest<const D: usize>(
         &self,
         Motion { of_body, shortest }: Motion,
         [before, now]: [&[f64]; 2],
-        tree: &Tree,
-        path: impl Fn(usize) -> Bounds,
+        boxes: Boxes,
         mut crossing: impl FnMut(usize, [&[f64]; 2], f64, usize) -> Option<Met>,
     ) -> Option<Passed>
     where
@@ -91,7 +101,7 @@ impl<B> Paths<'_, B> {
         let mut near = Vec::new();
         let mut worst: Option<Passed> = None;
         for (place, &node) in nodes.iter().enumerate() {
-            tree.find_into(&path(node), &mut near);
+            boxes.tree.find_into(&(boxes.of_node)(node), &mut near);
             near.retain(|&facet| bounds(node, facet));
             if !near.iter().any(|&facet| self.moves_far(node, facet, [before, now])) {
                 continue;
@@ -115,7 +125,7 @@ impl<B> Paths<'_, B> {
             let mut way = OnWay {
                 boundary,
                 bounds,
-                tree,
+                boxes,
                 between: between.get_or_insert_with(|| Between::new([before, now])),
                 before,
                 node,
@@ -147,7 +157,7 @@ fn relative<const D: usize>([before, now]: [&[f64]; 2], node: usize, other: usiz
 struct OnWay<'a, 'b, const D: usize, B> {
     boundary: &'a B,
     bounds: &'a dyn Fn(usize, usize) -> bool,
-    tree: &'a Tree,
+    boxes: Boxes<'a>,
     between: &'a mut Between<'b, D>,
     before: &'a [f64],
     node: usize,
@@ -165,7 +175,8 @@ impl<const D: usize, B: Facets<D>> Way for OnWay<'_, '_, D, B> {
             (self.bounds)(self.node, facet)
                 .then(|| boundary.distance(facet, point, self.between.with(theta, boundary.nodes_of(facet))))
         };
-        let (facet, _) = self.tree.nearest(&point.0, self.from, distance)?;
+        let seen = self.boxes.drift.seen(theta, &point.0);
+        let (facet, _) = self.boxes.tree.nearest(&seen, self.from, distance)?;
         for beside in boundary.beside(facet) {
             self.between.with(theta, boundary.nodes_of(beside));
         }

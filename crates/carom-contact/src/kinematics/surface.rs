@@ -7,6 +7,7 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape, Hull, Tree};
 
 use super::apart::Apart;
+use super::drift::Drift;
 use super::facets::Facets;
 use super::mirror::{is_mirror, reflected};
 use super::projection::Facet;
@@ -226,6 +227,8 @@ pub(crate) struct Search {
     tree: Tree,
     found: Vec<usize>,
     apart: Apart,
+    /// The frame of the boxes.
+    drift: Drift,
     /// Distance from the paths of the nodes within which facets are found.
     reach: f64,
     /// Distance from the paths of facets within which nodes are near them, whatever their size.
@@ -238,7 +241,15 @@ impl Search {
         let hull = Hull::line(surface.shape.nodes(), 1.0);
         let both = surface.nodes.iter().chain(nodes).copied();
         let apart = Apart::new(both, surface.shape.dimension(), hull.weight());
-        Self { hull, tree: Tree::default(), found: Vec::new(), apart, reach: 0.0, around: 0.0 }
+        Self {
+            hull,
+            tree: Tree::default(),
+            found: Vec::new(),
+            apart,
+            drift: Drift::default(),
+            reach: 0.0,
+            around: 0.0,
+        }
     }
 
     /// Finds facets up to a distance from the paths of the nodes.
@@ -272,21 +283,22 @@ impl Search {
             return false;
         }
         let hull = &self.hull;
+        let all_nodes = surface.nodes.iter().copied();
+        self.drift = Drift::of(all_nodes, surface.shape.dimension(), [before.flat(), now.flat()]);
+        let drift = self.drift;
         let swept = |facet: usize| {
             let nodes = surface.facet(facet).nodes;
             let [old, new] = [before, now].map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
-            let bounds = old.union(&new);
+            let bounds = drift.path(old, new);
             bounds.grown((margin * bounds.size()).max(self.around))
         };
         self.tree.place(surface.all(), swept);
         let mut all = Bounds::EMPTY;
         let mut longest = 0.0_f64;
         for &node in nodes {
-            let from = before.coordinates(node);
-            let to = now.coordinates(node);
-            all.add(from);
-            all.add(to);
-            longest = from.iter().zip(to).fold(longest, |most, (from, to)| most.max((to - from).abs()));
+            let path = self.box_of(node, before, now);
+            all = all.union(&path);
+            longest = longest.max(path.size());
         }
         let all = all.grown(PATH_MARGIN * longest + self.reach);
         let facets = self.tree.bounds();
@@ -296,8 +308,24 @@ impl Search {
 
     /// Finds the facets whose path is near a node's path, ascending.
     pub(crate) fn find(&mut self, node: usize, before: Places, now: Places) {
-        let path = path([before, now].map(|y| y.coordinates(node))).grown(self.reach);
+        let path = self.path(node, before, now).grown(self.reach);
         self.tree.find_into(&path, &mut self.found);
+    }
+
+    /// The box of a node's path in the search for facets.
+    pub(crate) fn path(&self, node: usize, before: Places, now: Places) -> Bounds {
+        let path = self.box_of(node, before, now);
+        path.grown(PATH_MARGIN * path.size())
+    }
+
+    fn box_of(&self, node: usize, before: Places, now: Places) -> Bounds {
+        let [old, new] = [before, now].map(|y| Bounds::of(y.coordinates(node)));
+        self.drift.path(old, new)
+    }
+
+    /// The frame of the boxes.
+    pub(crate) fn drift(&self) -> Drift {
+        self.drift
     }
 
     /// The hierarchy of the bounding boxes of the paths of facets.
@@ -318,9 +346,3 @@ impl Search {
 
 /// Margin around a node's path in the search for facets, relative to the path's size.
 const PATH_MARGIN: f64 = 0.1;
-
-/// The box of a node's path in the search for facets.
-pub(crate) fn path(ends: [&[f64]; 2]) -> Bounds {
-    let path: Bounds = ends.iter().collect();
-    path.grown(PATH_MARGIN * path.size())
-}

@@ -131,6 +131,7 @@ impl Stepper for Explicit {
             dt,
             carried: 0.0,
             leads: [0.0; 2],
+            means: false,
             impulses: works::Works::default(),
             paths: Vec::new(),
             previous: None,

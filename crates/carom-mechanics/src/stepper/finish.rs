@@ -32,6 +32,9 @@ pub(super) struct Finish<'a> {
     /// (`works.rs`). Used if gaps close and velocities are projected; zero in explicit and impulse
     /// schemes and in the fallback.
     pub impulses: Works,
+    /// Whether accelerations and contact forces are means over the step, not those at its end: they
+    /// remain where velocities are projected.
+    pub means: bool,
     /// The parts of the step, to find when nodes met the other side; none if that is not asked.
     pub paths: Vec<Path<'a>>,
     /// The data of this step for a two-step scheme, used if neither contacts nor velocities change
@@ -71,7 +74,7 @@ impl Finish<'_> {
         let taken = start.ledger.contact_work - next.ledger.contact_work;
         restitution::take(model, &mut next, taken);
         let closed = closed(model, start, &next, &report.activations);
-        let impact = Impact { dt, start, closed };
+        let impact = Impact { dt, start, closed, means: self.means };
         let is_ahead = self.leads != [0.0; 2] && !model.motions.is_empty();
         let before = is_ahead.then(|| work.copy(&next));
         let projected = project(model, &mut next, &impact, &report.activations, &mut work.system)?;

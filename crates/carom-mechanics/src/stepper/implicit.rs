@@ -222,6 +222,7 @@ impl Stepper for Implicit {
             dt,
             carried: factor,
             leads,
+            means: equations.between(),
             impulses,
             paths,
             previous,

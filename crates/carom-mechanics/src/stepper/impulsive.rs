@@ -188,6 +188,7 @@ impl Stepper for Impulsive {
             dt,
             carried: 0.0,
             leads: [0.0; 2],
+            means: false,
             impulses: Works::default(),
             paths,
             previous: None,

@@ -67,7 +67,9 @@ pub(crate) fn project(
         works += close_gaps(model, state, &pressed.closed, system)?;
         works += impact.restitute(model, state, &pressed.closed, system)?;
     }
-    pressed.accelerate(model, state, system)?;
+    if !impact.means {
+        pressed.accelerate(model, state, system)?;
+    }
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;
     state.ledger.contact_work += jump - works.friction - works.external;

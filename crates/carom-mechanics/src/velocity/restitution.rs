@@ -39,6 +39,8 @@ pub(crate) struct Impact<'a> {
     pub start: &'a State,
     /// The gaps at its start of pairs that closed in it: (contact, pair), gap.
     pub closed: Vec<((usize, usize), f64)>,
+    /// Whether accelerations and contact forces are means over the step.
+    pub means: bool,
 }
 
 impl Impact<'_> {

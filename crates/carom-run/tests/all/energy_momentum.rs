@@ -1,5 +1,5 @@
 //! Free flight of a spinning, straining and vibrating soft body: quantities that the discrete
-//! gradient conserves to round-off, and other schemes do not.
+//! gradient conserves to round-off, and other schemes do not. Contact forces are means over a step.
 
 use carom_run::{GridReport, Simulation};
 
@@ -82,4 +82,60 @@ fn energy_and_momenta_of_a_free_flight_are_kept_to_round_off() {
     let (energy, momenta, ..) =
         drift(&[r#"time.scheme={ kind = "chung-hulbert", rho_inf = 1.0, forces = "average-state" }"#]);
     assert!(energy > 1e-4 && momenta.iter().all(|lost| *lost < 1e-8), "{energy:e} {momenta:?}");
+}
+
+/// A block at rest on a plane, and another one that falls beside it from a height.
+fn beside(height: f64) -> String {
+    format!(
+        r#"
+dimension = 2
+material = [{{ name = "m", law = "saint-venant-kirchhoff", density = 1.0, young = 1e6, poisson = 0.3 }}]
+[[body]]
+name = "rests"
+material = "m"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [2, 2] }}
+gravity = [0.0, -10.0]
+[[body]]
+name = "falls"
+material = "m"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [5.0, {height:?}], max = [6.0, {:?}], cells = [2, 2] }}
+gravity = [0.0, -10.0]
+[[contact]]
+name = "of-rest"
+secondary = "rests.bottom"
+primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+[[contact]]
+name = "of-fall"
+secondary = "falls.bottom"
+primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}
+[time]
+end = 0.14
+step = 2e-3
+scheme = {{ kind = "energy-momentum" }}
+"#,
+        height + 1.0
+    )
+}
+
+/// The force of a contact is the mean over each step, M dv/dt, also in one in which velocities are
+/// projected elsewhere.
+#[test]
+fn forces_of_a_contact_do_not_depend_on_another_body_that_lands() {
+    let mut alone = simulation(&beside(50.0), &[""; 0]);
+    let mut joined = simulation(&beside(0.05), &[""; 0]);
+    let mut meets = false;
+    while !joined.finished() {
+        let before = momenta(&alone, &alone.state().v)[1];
+        let [apart, together] = [&mut alone, &mut joined].map(|sim| {
+            sim.advance(&mut GridReport::default()).unwrap();
+            sim.state().contact_forces[0][1]
+        });
+        assert!((together - apart).abs() < 1e-6 * 10.0, "{together} {apart}");
+        let change = (momenta(&alone, &alone.state().v)[1] - before) / 2e-3;
+        assert!((apart - change - 20.0).abs() < 1e-6 * 10.0, "{apart} {change}");
+        meets |= joined.state().contact_forces[1][1] > 0.0;
+    }
+    assert!(meets);
 }

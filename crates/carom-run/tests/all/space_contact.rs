@@ -3,7 +3,7 @@
 
 use super::common::{finish, on_threads, simulation};
 use super::space::apart;
-use carom_run::Simulation;
+use carom_run::{GridReport, Simulation};
 
 pub(crate) const IMPACT: &str = r#"
 dimension = 2
@@ -160,5 +160,59 @@ fn a_rigid_sphere_of_large_radius_is_a_plane() {
         let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst < 0.5 * last && worst < 1.0 / radius, "{radius}: {worst:e}");
         last = worst;
+    }
+}
+
+/// Two blocks that meet with whole skins, in a frame in which both move by two of their lengths in
+/// a step: the impulse is the same, and no step is rejected.
+#[test]
+fn an_impact_is_the_same_in_a_fast_frame() {
+    let text = r#"
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 200.0, poisson = 0.3 }]
+contact = [{ name = "c", secondary = "a.skin", primary = "b.skin", mu = 0.3 }]
+"#;
+    let in_space = |[x, y, z]: [f64; 3]| {
+        format!(
+            r#"dimension = 3
+body = [
+    {{ name = "a", material = "m", element = "Hex8", mesh = {{ shape = "box", min = [-0.3, -0.2, 0.01], max = [0.3, 0.25, 0.4], cells = [3, 3, 2] }}, velocity = {{ linear = [{:?}, {:?}, {:?}], angular = [0.3, 2.0, 0.5], about = [0, 0, 0.2] }} }},
+    {{ name = "b", material = "m", element = "Hex8", mesh = {{ shape = "box", min = [-0.6, -0.5, -0.4], max = [0.5, 0.5, 0.0], cells = [4, 4, 2] }}, velocity = [{x:?}, {y:?}, {z:?}] }},
+]"#,
+            x + 0.5,
+            y + 0.1,
+            z - 1.0
+        )
+    };
+    let in_plane = |[x, y, _]: [f64; 3]| {
+        format!(
+            r#"dimension = 2
+body = [
+    {{ name = "a", material = "m", element = "Q4", mesh = {{ shape = "rectangle", min = [-0.3, 0.01], max = [0.3, 0.4], cells = [3, 2] }}, velocity = {{ linear = [{:?}, {:?}], angular = 2.0, about = [0, 0.2] }} }},
+    {{ name = "b", material = "m", element = "Q4", mesh = {{ shape = "rectangle", min = [-0.6, -0.4], max = [0.5, 0.0], cells = [4, 2] }}, velocity = [{x:?}, {y:?}] }},
+]"#,
+            x + 0.5,
+            y - 1.0
+        )
+    };
+    let schemes =
+        [r#"{ kind = "moreau-jean", theta = 0.5 }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.8 }"#];
+    for scheme in schemes {
+        let time = format!("[time]\nend = 0.03\nstep = 1e-3\nscheme = {scheme}\n");
+        let impulse = |bodies: String| {
+            let mut sim = simulation(&format!("{bodies}\n{text}{time}"), &[""; 0]);
+            while !sim.finished() {
+                let mut report = GridReport::default();
+                sim.advance(&mut report).unwrap();
+                assert_eq!(report.rejected, 0, "{scheme}");
+            }
+            sim.state().impulses[0]
+        };
+        let fast = [2000.0, 1000.0, -1400.0];
+        for [at_rest, moved] in [[in_plane([0.0; 3]), in_plane(fast)], [in_space([0.0; 3]), in_space(fast)]] {
+            let [at_rest, moved] = [at_rest, moved].map(impulse);
+            let size = at_rest.iter().fold(0.0, |size, x| f64::hypot(size, *x));
+            let error = at_rest.iter().zip(moved).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+            assert!(size > 1e-3 && error < 1e-6 * size, "{scheme}: {at_rest:?} {moved:?}");
+        }
     }
 }

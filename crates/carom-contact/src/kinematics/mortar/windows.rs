@@ -6,6 +6,7 @@ use carom_solid::{Bounds, Hull};
 use super::cut::meet;
 use super::opposite::{Opposite, Primary};
 use super::sides::Mortar;
+use crate::kinematics::drift::Drift;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
 use crate::kinematics::watch_every_node;
@@ -119,10 +120,11 @@ impl Mortar {
     fn faced(&self, primary: &Primary, ends: [Places; 2], margin: f64) -> Vec<Option<Window>> {
         let Primary { surface, order, folds, .. } = primary;
         let hulls = [&self.secondary, surface].map(|side| Hull::line(side.shape().nodes(), 1.0));
+        let drift = Drift::of(surface.nodes().iter().copied(), 2, ends.map(|y| y.flat()));
         let swept = |side: &Surface, hull: &Hull, facet: usize| {
             let nodes = side.facet(facet).nodes;
             let [old, new] = ends.map(|y| hull.bounds(|a| y.coordinates(nodes[a])));
-            let bounds = old.union(&new);
+            let bounds = drift.path(old, new);
             bounds.grown(margin * bounds.size())
         };
         let mut faced = vec![None; self.secondary.facets()];

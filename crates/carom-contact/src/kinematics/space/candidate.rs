@@ -6,7 +6,7 @@ use carom_algebra::Vector;
 use super::crossing::crossing;
 use super::node_to_patch::{NEAR_END, NodeToPatch, PAST, REACH};
 use super::patch::place;
-use super::paths::{NOISE, Paths, path};
+use super::paths::{NOISE, Paths};
 use crate::kinematics::candidate::AROUND;
 use crate::kinematics::opposed::{BLUNT, FLUSH, presses};
 use crate::kinematics::way::Met;
@@ -43,7 +43,7 @@ impl NodeToPatch {
         now: &[f64],
     ) -> Option<Met> {
         let mut first: [Option<Met>; 2] = [None; 2];
-        let path = path(node, [before, now]);
+        let path = paths.path(node, [before, now]);
         for &facet in near.iter().filter(|&&facet| paths.may_cross(&path, facet)) {
             let first = &mut first[usize::from(self.is_met(node, facet, paths))];
             if let Some(SpaceHit { theta, xi }) =
@@ -163,7 +163,7 @@ impl NodeToPatch {
         let closest = self.closest_faced(near, paths, node, now);
         if self.allowed(place_of) > 0.0 {
             // It may be inside, and is no candidate before it is too deep.
-            let moved = (end - start).norm();
+            let moved = (Vector(paths.drift().seen(1.0, &end.0)) - start).norm();
             if moved < self.allowed(place_of) && closest.is_none_or(|closest| closest.gap + slack >= 0.0) {
                 return None;
             }
@@ -217,7 +217,7 @@ impl NodeToPatch {
         [before, now]: [&[f64]; 2],
     ) -> Option<OnFacet<[f64; 2]>> {
         let node = self.secondary[place_of];
-        let path = path(node, [before, now]);
+        let path = paths.path(node, [before, now]);
         near.retain(|&facet| held.iter().all(|pair| pair.facet != facet) && paths.may_cross(&path, facet));
         if near.is_empty() {
             return None;

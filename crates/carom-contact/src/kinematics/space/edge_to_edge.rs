@@ -19,6 +19,7 @@ use super::edges::Edges;
 use super::folds::PatchFolds;
 use crate::friction::{FrictionState, Tangential};
 use crate::kinematics::apart::Apart;
+use crate::kinematics::drift::Drift;
 use crate::kinematics::tangents::tangents;
 use crate::kinematics::{Kinematics, Passed, SweptEdges};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
@@ -292,9 +293,11 @@ impl EdgeToEdge {
         if self.sides.iter().any(|side| side.len() == 0) {
             return;
         }
+        let of_primary = (0..self.sides[1].len()).flat_map(|edge| self.sides[1].nodes(edge).iter().copied());
+        let drift = Drift::of(of_primary, 3, [before, now]);
         let swept = |i: usize, edge: usize| {
             let [old, new] = [before, now].map(|y| self.sides[i].bounds(edge, y));
-            let bounds = old.union(&new);
+            let bounds = drift.path(old, new);
             bounds.grown(NOISE * bounds.size())
         };
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);

@@ -470,8 +470,8 @@ impl Kinematics for NodeToPatch {
         if !repeats {
             recent.begin(*margin, [before, now]);
             paths.update(&self.primary, &self.hull, self.around(*margin), [before, now]);
-            let ends = |&node: &usize| [place(before, node).0, place(now, node).0];
-            let nodes: Bounds = self.secondary.iter().flat_map(ends).collect();
+            let own = self.secondary.iter().map(|&node| paths.path(node, [before, now]));
+            let nodes = own.fold(Bounds::EMPTY, |all, path| all.union(&path));
             let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
             apart.searched(boxes, [*margin, NOISE], now);
         }

@@ -2,8 +2,8 @@
 
 use super::crossing::crossing;
 use super::node_to_patch::{NodeToPatch, Tools};
-use super::paths::{Around, path};
-use crate::kinematics::passed::Paths;
+use super::paths::Around;
+use crate::kinematics::passed::{Boxes, Paths};
 use crate::kinematics::way::Met;
 use crate::kinematics::{Kinematics, Passed, SpaceHit};
 
@@ -32,8 +32,7 @@ impl NodeToPatch {
         among.deepest(
             motion,
             ends,
-            paths.tree(),
-            |node| path(node, ends),
+            Boxes { tree: paths.tree(), drift: paths.drift(), of_node: &|node| paths.path(node, ends) },
             |facet, ends, until, node| {
                 let SpaceHit { theta, xi } = crossing(swept, self.primary.patch(facet), ends, until, node)?;
                 Some(Met { theta, facet, xi })

@@ -1,10 +1,12 @@
-//! Boxes of the facets' paths in a step: which facets are near a node, and which it may cross.
+//! Boxes of the facets' paths in a step, in the frame of their mean motion: which facets are near a
+//! node, and which it may cross.
 
 use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
 use super::patch::{PatchPoint, place};
 use crate::kinematics::Facets;
+use crate::kinematics::drift::Drift;
 
 /// Depth, relative to the length of a facet, that may be round-off.
 pub(super) const NOISE: f64 = 1e-9;
@@ -20,6 +22,7 @@ pub(super) struct Paths {
     /// Boxes of the paths of facets without a margin.
     tight: Vec<Bounds>,
     start: Start,
+    drift: Drift,
 }
 
 /// Distance from a facet at which a node is near it.
@@ -68,9 +71,10 @@ impl Paths {
         [before, now]: [&[f64]; 2],
     ) {
         self.start.update(primary, hull, before);
+        self.drift = Drift::of(primary.nodes().iter().copied(), 3, [before, now]);
         let boxes = self.start.boxes.iter().enumerate();
         self.tight.clear();
-        self.tight.extend(boxes.map(|(facet, old)| old.union(&primary.bounds(hull, facet, now))));
+        self.tight.extend(boxes.map(|(facet, old)| self.drift.path(*old, primary.bounds(hull, facet, now))));
         let tight = &self.tight;
         self.tree
             .place(tight.len(), |facet| tight[facet].grown((margin * tight[facet].size()).max(distance)));
@@ -88,7 +92,19 @@ impl Paths {
 
     /// Finds the facets near a node's path, ascending.
     pub(super) fn find_into(&self, node: usize, ends: [&[f64]; 2], near: &mut Vec<usize>) {
-        self.tree.find_into(&path(node, ends), near);
+        self.tree.find_into(&self.path(node, ends), near);
+    }
+
+    /// Box of the path of a node.
+    pub(super) fn path(&self, node: usize, ends: [&[f64]; 2]) -> Bounds {
+        let [old, new] = ends.map(|y| Bounds::of(&place(y, node).0));
+        let path = self.drift.path(old, new);
+        path.grown(NOISE * path.size())
+    }
+
+    /// The frame of the boxes.
+    pub(super) fn drift(&self) -> Drift {
+        self.drift
     }
 
     /// Whether a node may meet a facet on its path, rather than only be near it.
@@ -96,10 +112,4 @@ impl Paths {
         let tight = &self.tight[facet];
         tight.grown(MEETS * tight.size()).meets(path)
     }
-}
-
-/// Bounding box of the path of a node in a step.
-pub(super) fn path(node: usize, ends: [&[f64]; 2]) -> Bounds {
-    let path: Bounds = ends.iter().map(|y| place(y, node).0).collect();
-    path.grown(NOISE * path.size())
 }
