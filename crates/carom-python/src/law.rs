@@ -116,6 +116,11 @@ impl<const D: usize> Material<D> for Law {
     const MEMORY: usize = MOST;
     type Point = Point;
 
+    /// What its numbers mean is not known.
+    fn plastic_strain(&self, _: &[f64]) -> f64 {
+        f64::NAN
+    }
+
     fn after(&self, h: &Mat<D>, past: &Past) -> Result<Point, NotPositive> {
         let det_f = 1.0 + excess_det(h);
         if det_f.is_nan() || det_f <= 0.0 {

@@ -70,6 +70,7 @@ impl Simulation {
         threads: Option<usize>,
         given: &Bound<'_, PyDict>,
         laws: &Bound<'_, PyDict>,
+        fingerprints: HashMap<String, String>,
     ) -> PyResult<Self> {
         let (functions, failure) = functions(given)?;
         let names = functions.0.keys().cloned().collect();
@@ -79,7 +80,7 @@ impl Simulation {
             own.push((material.clone(), Law::new(material, &object, failure.clone())?));
         }
         let mut remembered: Vec<String> =
-            own.iter().map(|(material, law)| format!("{material} ({} numbers)", law.memory())).collect();
+            fingerprints.iter().map(|(material, of_law)| format!("{material}:{of_law}")).collect();
         remembered.sort();
         let spec = case.with(functions);
         let started = py.detach(|| {
@@ -235,7 +236,11 @@ impl Simulation {
                  run, [initial] from"
             )));
         }
-        self.inner()?.library.restore(state).map_err(|other| PyValueError::new_err(other.to_string()))
+        let mut inner = self.inner()?;
+        let Inner { library, rows } = &mut *inner;
+        library.restore(state).map_err(|other| PyValueError::new_err(other.to_string()))?;
+        rows.begin(library);
+        Ok(())
     }
 }
 

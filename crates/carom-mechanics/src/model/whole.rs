@@ -343,7 +343,8 @@ impl Model {
         let past = past_of(&self.parts, body, memory);
         let body = &self.parts[body].body;
         let strains = (0..body.mesh().cell_count()).map(|cell| body.cell_plastic_strain(cell, &past));
-        strains.fold(0.0, f64::max)
+        // A NaN stays.
+        strains.fold(0.0, |most, strain| if strain > most || strain.is_nan() { strain } else { most })
     }
 
     /// Smallest J over all quadrature points, which remember `memory`.

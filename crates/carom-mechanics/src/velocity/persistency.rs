@@ -58,6 +58,7 @@ pub(crate) fn project(
     }
     let pressed = Pressed::new(model, state, impact.start)?;
     let before = state.ledger.kinetic;
+    let of_step = impact.means.then(|| state.pairs.clone());
     let mut works = Works::default();
     if stops {
         works = stop_slips(model, state, &pressed.closed, system)?;
@@ -67,8 +68,9 @@ pub(crate) fn project(
         works += close_gaps(model, state, &pressed.closed, system)?;
         works += impact.restitute(model, state, &pressed.closed, system)?;
     }
-    if !impact.means {
-        pressed.accelerate(model, state, system)?;
+    match of_step {
+        Some(pairs) => state.pairs = pairs,
+        None => pressed.accelerate(model, state, system)?,
     }
     book_kinetic(model, state);
     let jump = state.ledger.kinetic - before;

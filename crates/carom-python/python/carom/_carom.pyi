@@ -63,7 +63,12 @@ class Record:
 
 class Simulation:
     def __new__(
-        cls, case: Case, threads: int | None, given: Functions, laws: dict[str, object]
+        cls,
+        case: Case,
+        threads: int | None,
+        given: Functions,
+        laws: dict[str, object],
+        fingerprints: dict[str, str],
     ) -> Simulation: ...
     def advance(self) -> tuple[int, int, int, int, float]: ...
     @property

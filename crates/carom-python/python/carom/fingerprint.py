@@ -1,4 +1,4 @@
-"""A fingerprint of a function: of its code and of the values that it has with it.
+"""A fingerprint of a function, or of a law: of its code and of the values that it has with it.
 
 Two functions with the same code, defaults, enclosed values and attributes have the same fingerprint,
 in every process. What a function reads from files or global variables is not seen.
@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import types
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -19,13 +18,13 @@ from .errors import CaseError
 _PLAIN = (bool, int, float, complex, str, bytes, type(None), type(...), np.generic)
 
 
-def fingerprint(function: Callable[..., Any]) -> str:
+def fingerprint(value: object) -> str:
     """The fingerprint, in hexadecimal."""
     try:
-        return _Walk().digest(function).hex()
+        return _Walk().digest(value).hex()
     except RecursionError:
         raise CaseError(
-            f"the function {function!r} has values with it that are nested too deeply to be compared\n"
+            f"{value!r} has values with it that are nested too deeply to be compared\n"
             "try: let it read them from a global variable"
         ) from None
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _carom
 from .case import Case
+from .fingerprint import fingerprint
 from .progress import thread_count
 from .table import Table
 
@@ -81,8 +82,13 @@ class Simulation:
     def __init__(
         self, case: Case, threads: int | None = None, laws: Mapping[str, object] | None = None
     ) -> None:
+        laws = dict(laws or {})
+        fingerprints = {
+            material: fingerprint((law, getattr(type(law), "response", None)))
+            for material, law in laws.items()
+        }
         self._core = _carom.Simulation(
-            case._core, thread_count(threads), case._functions, dict(laws or {})
+            case._core, thread_count(threads), case._functions, laws, fingerprints
         )
         self._columns = self._core.columns()
 

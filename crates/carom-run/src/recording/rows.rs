@@ -33,9 +33,14 @@ impl Rows {
             surfaces: Surfaces::new(model, case.thickness),
             since: Since::default(),
         };
-        let penetration = penetration(model, simulation.state());
-        rows.advanced(&GridReport { penetration, ..GridReport::default() });
+        rows.begin(simulation);
         rows
+    }
+
+    /// The state is one from which a simulation begins, or that was restored: no step has led to it.
+    pub fn begin(&mut self, simulation: &Simulation) {
+        let penetration = penetration(simulation.model(), simulation.state());
+        self.advanced(&GridReport { penetration, ..GridReport::default() });
     }
 
     /// Names and units of the values of a row.

@@ -271,7 +271,8 @@ energy_guard = false
             assert!(state.impulses[0][1] >= before, "{scheme}: {} {before}", state.impulses[0][1]);
             before = state.impulses[0][1];
         }
-        assert!(let_go > 0, "{scheme}");
+        // Multipliers of energy–momentum are means over the step.
+        assert!(let_go > 0 || scheme.starts_with("energy"), "{scheme}");
     }
 }
 

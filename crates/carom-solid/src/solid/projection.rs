@@ -56,8 +56,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             state.plastic_strain += weight * of_point.plastic_strain;
             state.yielded += of_point.yielded / states.len() as f64;
         }
-        // Of a field that is nowhere negative; its polynomial may be.
-        state.plastic_strain = state.plastic_strain.max(0.0);
+        // Of a field that is nowhere negative; its polynomial may be. A NaN stays.
+        state.plastic_strain = if state.plastic_strain < 0.0 { 0.0 } else { state.plastic_strain };
         Ok(state)
     }
 }

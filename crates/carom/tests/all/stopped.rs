@@ -175,7 +175,7 @@ fn a_stop_among_contacts_between_bodies() {
     let place = Place::new("between");
     place.file("all.toml", include_str!("../../../../cases/self/all.toml"));
     // Coarse, so that it stops where contact begins.
-    let keys = ["newton.max_iterations=2", "time.step=5e-3", "body.ring.mesh.size=0.25"];
+    let keys = ["newton.max_iterations=3", "time.step=5e-3", "body.ring.mesh.size=0.25"];
     let sets: Vec<&str> = keys.iter().flat_map(|set| ["--set", *set]).collect();
     let run = [&["run", "all.toml", "--out", "run"][..], &sets].concat();
     assert_eq!(place.carom(&run).status.code(), Some(3));
