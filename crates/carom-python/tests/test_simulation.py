@@ -65,9 +65,12 @@ def test_restored_states_continue_bitwise(disc: carom.Case) -> None:
     for _ in range(10):
         simulation.advance()
     checkpoint = simulation.checkpoint()
+    penetration = simulation.row["penetration"]
     positions = [simulation.advance() and simulation.y for _ in range(5)]
     simulation.restore(checkpoint)
     assert simulation.step == 10
+    # No step has led to it.
+    assert simulation.row["penetration"] == penetration and simulation.row["newton"] == 0.0
     again = [simulation.advance() and simulation.y for _ in range(5)]
     other = carom.Simulation(disc, threads=2)
     other.restore(checkpoint)

@@ -31,6 +31,7 @@ mod ledger;
 pub mod oscillation;
 #[doc(hidden)]
 pub mod overlay;
+mod parties;
 #[doc(hidden)]
 pub mod pressure;
 mod rebound;

@@ -119,7 +119,7 @@ impl Facts<'_> {
 
     fn rebound(&self) -> Option<Number> {
         let value = self.metric("restitution")?;
-        let striker = metrics::striker(&self.run.history).unwrap_or_default();
+        let striker = metrics::striker(self.run).unwrap_or_default();
         Some(Number::new(
             "Rebound",
             significant(value, 3),

@@ -1,6 +1,6 @@
-//! Mean motion of a side in a step. Boxes of paths are those in the frame that moves with it: bodies
-//! that fly together stay near what they are near, and which facets are near a node does not depend
-//! on the frame in which all of them are seen.
+//! Mean motion of a side in a step. Boxes of paths are those in the frame that moves with it:
+//! bodies that fly together stay near what they are near, and which facets are near a node does not
+//! depend on the frame in which all of them are seen.
 
 use carom_solid::Bounds;
 
@@ -33,7 +33,8 @@ impl Drift {
         before.union(&now.moved(self.motion.map(|x| -x)))
     }
 
-    /// A point, given by one to three coordinates at the instant θ of the step, in the moving frame.
+    /// A point, given by one to three coordinates at the instant θ of the step, in the moving
+    /// frame.
     pub(crate) fn seen(&self, theta: f64, point: &[f64]) -> [f64; 3] {
         let at = |i: usize| point.get(i).map_or(0.0, |x| x - theta * self.motion[i]);
         std::array::from_fn(at)

@@ -18,6 +18,11 @@ pub struct Episode {
 const WINDOWS: f64 = 16.0;
 
 impl Episode {
+    /// Whether a row at a time is in contact.
+    pub(super) fn contains(self, times: &[f64], time: f64) -> bool {
+        times[self.start] <= time && self.end.is_none_or(|end| time < times[end])
+    }
+
     /// Time over which peaks are averaged, 1/16 of the episode; none if it has not ended.
     pub(super) fn window(self, times: &[f64]) -> Option<f64> {
         Some((times[self.end?] - times[self.start]) / WINDOWS)

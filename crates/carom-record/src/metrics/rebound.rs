@@ -17,8 +17,9 @@ use carom_formula::Formula;
 
 use super::episode::{Episode, first_episode};
 use super::given::{Given, vector};
+use super::parties::{Party, parties};
 use super::striker::striker;
-use crate::{History, Run, body_of};
+use crate::{History, Run};
 
 /// Variables of the motion of a support.
 const VARIABLES: [&str; 4] = ["X", "Y", "Z", "t"];
@@ -27,9 +28,6 @@ const VARIABLES: [&str; 4] = ["X", "Y", "Z", "t"];
 const AT_REST: f64 = 1e-9;
 /// Change of the velocity of a support along the normal, over that of approach, that drives a body.
 const DRIVEN: f64 = 1e-3;
-
-/// A body, or an obstacle that moves; none: an obstacle that is fixed.
-pub(super) type Party<'a> = Option<&'a str>;
 
 /// The first episode of a run as the impact of its striker.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +78,7 @@ impl<'a> Impact<'a> {
             return Err("load steps have no velocities");
         }
         let episode = first_episode(&run.history).ok_or("no contact closed")?;
-        let striker = striker(&run.history).ok_or("no body moves")?;
+        let striker = striker(run).ok_or("no body moves")?;
         let before = episode.start.checked_sub(1).ok_or("contact is closed at the start")?;
         if episode.is_within_a_step(&run.history) {
             return Err("contact begins and ends between two rows");
@@ -108,12 +106,10 @@ impl<'a> Impact<'a> {
     /// impulse on it; none if it strikes nothing but itself.
     fn of(striker: &'a str, run: &'a Run, episode: Episode) -> Option<Self> {
         let times = run.times();
-        let is_in =
-            |time: f64| times[episode.start] <= time && episode.end.is_none_or(|end| time < times[end]);
         let mut others = Vec::new();
         let mut impulse = [0.0; 3];
         let mut moments = Vec::<Moment>::new();
-        for row in run.contact.iter().filter(|row| is_in(row.time)) {
+        for row in run.contact.iter().filter(|row| episode.contains(times, row.time)) {
             let Some([secondary, primary]) = parties(run, &row.contact) else { continue };
             let (other, sign) = match [secondary, primary].map(|party| party == Some(striker)) {
                 [true, false] => (primary, -1.0),
@@ -222,14 +218,6 @@ pub fn no_rebound(run: &Run) -> Option<&'static str> {
         Ok(_) => Some("the first contact lasts to the end of the run"),
         Err(why) => Some(why),
     }
-}
-
-/// The parties of a contact, that of the secondary side first.
-fn parties<'a>(run: &'a Run, contact: &str) -> Option<[Party<'a>; 2]> {
-    let spec = run.manifest.facts.contacts.iter().find(|spec| spec.name == contact)?;
-    let obstacle = spec.moves.then_some(spec.name.as_str());
-    let primary = spec.primary.as_deref().map_or(obstacle, |side| Some(body_of(side)));
-    Some([Some(body_of(&spec.secondary)), primary])
 }
 
 fn velocities<'a>(history: &'a History, party: &str) -> Vec<&'a [f64]> {

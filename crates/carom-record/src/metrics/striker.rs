@@ -1,5 +1,5 @@
-//! The striker, which is the body whose centre moves fastest before the first contact, and its
-//! apex after it.
+//! The striker, which is the body of the first contact whose centre moves fastest before it, and
+//! its apex after it.
 //!
 //! ```text
 //! apex   vertex of the parabola through the highest row of its centre and the adjacent rows
@@ -7,19 +7,27 @@
 
 use super::episode::first_episode;
 use super::given::{Given, norms, vector};
+use super::parties::taking_part;
 use super::samples::extreme;
-use crate::History;
+use crate::{History, Run};
 
 /// Excess of a speed over another one, relative to it, that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Name of the body whose centre moves fastest in the row before the first contact (without
-/// contact, in the first row); the first one of those that are equally fast. An obstacle whose
-/// motion is prescribed has reactions, and is none.
-pub fn striker(history: &History) -> Option<&str> {
+/// Name of the body, of those that take part in the first contact, whose centre moves fastest in
+/// the row before it (without contact, in the first row); the first one of those that are equally
+/// fast. An obstacle whose motion is prescribed has reactions, and is none.
+pub fn striker(run: &Run) -> Option<&str> {
+    let part = first_episode(&run.history).map_or(Vec::new(), |episode| taking_part(run, episode));
+    fastest(&run.history, |body| part.is_empty() || part.contains(&body))
+}
+
+/// Name of the body, of those asked for, whose centre moves fastest, as above.
+pub(super) fn fastest(history: &History, counts: impl Fn(&str) -> bool) -> Option<&str> {
     let row = first_episode(history).map_or(0, |e| e.start.saturating_sub(1));
     let movers = history.columns.iter().filter_map(|c| c.name.strip_suffix(".velocity_x"));
     let bodies = movers.filter(|name| history.column(&format!("{name}.reaction_x")).is_none());
+    let bodies = bodies.filter(|name| counts(name));
     let speeds =
         bodies.filter_map(|b| Some((b, *norms(&vector(history, &format!("{b}.velocity"))).get(row)?)));
     speeds
@@ -31,7 +39,8 @@ pub fn striker(history: &History) -> Option<&str> {
 /// rows.
 pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
     let history = given.history;
-    let center = *vector(history, &format!("{}.center", striker(history)?)).last()?;
+    let striker = given.run.map_or_else(|| fastest(history, |_| true), striker)?;
+    let center = *vector(history, &format!("{striker}.center")).last()?;
     let after = given.first()?.end?;
     let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
     let t = history.times();

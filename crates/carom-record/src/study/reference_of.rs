@@ -103,7 +103,7 @@ impl StudyManifest {
             for run in self.runs_of(i) {
                 let phase = self.run(run).role.member.map_or(0.0, |of| of.member.phase);
                 if let Some(run) = self.finished(directory, self.run(run))? {
-                    striker = striker.or_else(|| metrics::striker(&run.history).map(str::to_owned));
+                    striker = striker.or_else(|| metrics::striker(&run).map(str::to_owned));
                     if members.is_empty() && Some(&i) == arms.last() {
                         averaged = metrics::of_averages(&run);
                         if self.window.is_none() {

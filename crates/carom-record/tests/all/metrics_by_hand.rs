@@ -2,7 +2,7 @@
 //! force, free flight.
 
 use carom_record::metrics::samples::{peak_mean, roughness};
-use carom_record::metrics::{Episode, all, episodes, striker};
+use carom_record::metrics::{Episode, all, episodes};
 use carom_record::question::{Question, Window};
 use carom_record::{Column, History};
 
@@ -92,7 +92,6 @@ fn a_bounce_by_hand() {
         assert!((got - value).abs() <= tolerance, "{name}: {got} instead of {value}");
         assert_eq!(evaluate(&history, name).unwrap(), got);
     }
-    assert_eq!(striker(&history), Some("ball"));
     let episode = |start, end| Episode { start, end };
     assert_eq!(episodes(&history, 0.01), [episode(16, Some(20)), episode(21, Some(32))]);
 }

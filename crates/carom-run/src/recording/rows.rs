@@ -37,7 +37,8 @@ impl Rows {
         rows
     }
 
-    /// The state is one from which a simulation begins, or that was restored: no step has led to it.
+    /// The state is one from which a simulation begins, or that was restored: no step has led to
+    /// it.
     pub fn begin(&mut self, simulation: &Simulation) {
         let penetration = penetration(simulation.model(), simulation.state());
         self.advanced(&GridReport { penetration, ..GridReport::default() });

@@ -220,6 +220,21 @@ fn an_obstacle_that_turns_has_its_velocity_at_the_contact() {
     assert!((swung / moved - 1.0).abs() < 1e-3, "{swung} {moved}");
 }
 
+/// A body that meets nothing, and moves faster, is no striker.
+#[test]
+fn a_body_that_flies_past_does_not_strike() {
+    let past = r#"body=[
+        { name = "past", material = "m", element = "T6", mesh = { shape = "disc", radius = 0.3, center = [9.0, 9.0], size = 0.3 }, velocity = [5.0, 0.0] },
+        { name = "disc", material = "m", element = "T6", mesh = { shape = "disc", radius = 0.3, center = [0.1, 0.35], size = 0.15 }, velocity = [0.0, -0.5] },
+    ]"#;
+    let alone = record(PLANE, &[]);
+    let joined = record(PLANE, &[past]);
+    for name in ["restitution", "turning_time"] {
+        let [alone, joined] = [&alone, &joined].map(|run| value(run, name).unwrap());
+        assert!((joined / alone - 1.0).abs() < 1e-9, "{name}: {joined} {alone}");
+    }
+}
+
 /// A bat that turns about a point which travels, with all else, at V.
 #[test]
 fn a_bat_strikes_alike_in_every_frame() {
