@@ -43,6 +43,11 @@ pub fn sums<const K: usize, const T: usize>(
     std::array::from_fn(|t| sums[t].iter().sum::<f64>() + tail[t])
 }
 
+/// The larger one of two numbers; NaN if one of them is, which [`f64::max`] ignores.
+pub fn max_or_nan(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
+}
+
 /// Largest absolute value of a vector; infinite if a component is not finite.
 pub fn max_abs(x: &[f64]) -> f64 {
     let (whole, tail) = x.as_chunks::<LANES>();

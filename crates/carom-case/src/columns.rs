@@ -122,7 +122,8 @@ impl<'a> Recorded<'a> {
         columns.vector("momentum", &label.momentum, "momentum of all bodies");
         let unit = &label.angular_momentum;
         columns.rotational("angular_momentum", unit, "angular momentum about the origin");
-        let what = "contact force on the secondary sides at the end of the step; with energy-momentum its mean over the step";
+        let what = "contact force on the secondary sides at the end of the step; \
+                    with energy-momentum its mean over the step";
         columns.vector("contact_force", &label.force, what);
         let what = "time integral of the contact force, including projections";
         columns.vector("contact_impulse", &label.momentum, what);
@@ -174,12 +175,16 @@ impl<'a> Recorded<'a> {
         }
         let named = self.supports.iter().filter_map(|support| Some((support.name.as_ref()?, *support)));
         let prescribed = moving().filter(|c| matches!(c.motion, ObstacleMotion::Prescribed { .. }));
-        let supports = named.map(|(name, support)| (name, support.moment_about.is_some()));
-        for (name, has_moment) in supports.chain(prescribed.map(|contact| (&contact.name, false))) {
+        let about = "moment of the reaction forces about the given point";
+        let supports = named.map(|(name, support)| (name, support.moment_about.as_ref().map(|_| about)));
+        let torque = "moment of the reaction forces about the centre of rotation, which travels along";
+        let turns =
+            |motion: &ObstacleMotion| matches!(motion, ObstacleMotion::Prescribed { rotate: Some(_), .. });
+        let obstacles = prescribed.map(|contact| (&contact.name, turns(&contact.motion).then_some(torque)));
+        for (name, moment) in supports.chain(obstacles) {
             let what = "force of the support on the bodies";
             columns.vector(&format!("{name}.reaction"), &label.force, what);
-            if has_moment {
-                let what = "moment of the reaction forces about the given point";
+            if let Some(what) = moment {
                 columns.rotational(&format!("{name}.moment"), &label.moment, what);
             }
         }

@@ -116,7 +116,7 @@ impl<const D: usize> Material<D> for Law {
     const MEMORY: usize = MOST;
     type Point = Point;
 
-    /// What its numbers mean is not known.
+    /// Unknown: the object does not say what its numbers mean.
     fn plastic_strain(&self, _: &[f64]) -> f64 {
         f64::NAN
     }

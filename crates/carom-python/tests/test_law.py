@@ -127,7 +127,11 @@ def test_rows_and_checkpoints_of_plane_stress() -> None:
         assert simulation.row["grip.reaction_x"] == pytest.approx(given.row["grip.reaction_x"], rel=1e-9)
         assert simulation.row["min_det_f"] == pytest.approx(given.row["min_det_f"], rel=1e-9)
     checkpoint = simulation.checkpoint()
-    for laws in [{}, {"m": Damage(0.5, 2.0, 10.0)}]:
+
+    class Other(Damage):
+        scale = 2.0
+
+    for laws in [{}, {"m": Damage(0.5, 2.0, 10.0)}, {"m": Other(0.5, 1.0, 10.0)}]:
         with pytest.raises(carom.CaseError, match="other laws: m"):
             carom.Simulation(plate, laws=laws).restore(checkpoint)
     carom.Simulation(plate, laws={"m": Damage(0.5, 1.0, 10.0)}).restore(checkpoint)

@@ -47,10 +47,10 @@ pub(crate) fn found(
     let before = counterparts(case, model, y, old, state);
     for (own, (spec, contact)) in case.contacts.iter().zip(&model.contacts).enumerate() {
         let Some(before) = before[own] else {
-            let met = |&(_, other): &(usize, &ContactSpec)| have_the_same_bodies(other, spec);
-            let mut met = old.contacts.iter().enumerate().filter(met).peekable();
-            found.left.push(if met.peek().is_some() { left_by_another(spec) } else { DEEP });
-            let pressed = met.any(|(k, _)| state.pairs.get(k).is_some_and(|pairs| is_pressed(pairs)));
+            let is_met = |k: &usize| have_the_same_bodies(&old.contacts[*k], spec);
+            let met: Vec<usize> = (0..old.contacts.len()).filter(is_met).collect();
+            found.left.push(if met.is_empty() { DEEP } else { left_by_another(spec) });
+            let pressed = met.iter().any(|k| state.pairs.get(*k).is_some_and(|pairs| is_pressed(pairs)));
             found.pairs.push(if pressed { touching(model, contact, y) } else { Vec::new() });
             continue;
         };

@@ -46,7 +46,8 @@ pub(crate) struct SupportKeys {
     /// dimension 2 or 3.
     #[key(Vector, unit = "length", example = "[0.0, 0.0]")]
     moment_about: Option<Vec<f64>>,
-    /// Prescribed displacements by direction, zero at t = 0; velocity and acceleration are the time
+    /// Prescribed displacements by direction, from the reference positions: zero at t = 0, and
+    /// after `initial.from` those at the end of that run; velocity and acceleration are the time
     /// derivatives of the formula.
     #[key(example = "{ y = \"-0.1*t\" }")]
     r#move: Option<Move>,

@@ -4,11 +4,13 @@
 //!
 //! ```text
 //! δ = largest change of a coordinate since the last search, at the start and at the end of a step
-//! box of a facet's path, grown by m of its size    within the last one grown by A (1 + 2m) δ
-//! box of the nodes' paths, grown by n of its size    within the last one grown by (1 + 2n) δ
+//! box of a facet's path, grown by m of its size    within the last one grown by 3 A (1 + 2m) δ
+//! box of the nodes' paths, grown by n of its size    within the last one grown by 3 (1 + 2n) δ
 //! ```
 //!
-//! A bounds the sum of the weights of a facet's nodes in the points around it (`Hull::weight`).
+//! Seen from the frame of the boxes (`drift.rs`), which moves by up to 2δ in a step, the end of a
+//! path has moved by up to 3δ. A bounds the sum of the weights of a facet's nodes in the points
+//! around it (`Hull::weight`).
 
 use carom_solid::Bounds;
 
@@ -72,7 +74,7 @@ impl Apart {
         let high = facets.high();
         let between = |i: usize| (nodes.low()[i] - high[i]).max(low[i] - nodes.high()[i]);
         let between = (0..self.dimension).map(between).fold(0.0, f64::max);
-        let growth = self.weight * (1.0 + 2.0 * m) + 1.0 + 2.0 * n;
+        let growth = 3.0 * (self.weight * (1.0 + 2.0 * m) + 1.0 + 2.0 * n);
         let far = between + facets.size() + nodes.size();
         self.clearance = ((between - ROUND_OFF * far) / growth).max(0.0);
         self.margin = m;

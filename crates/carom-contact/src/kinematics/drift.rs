@@ -1,6 +1,6 @@
-//! Mean motion of a side in a step. Boxes of paths are those in the frame that moves with it:
-//! bodies that fly together stay near what they are near, and which facets are near a node does not
-//! depend on the frame in which all of them are seen.
+//! Mean motion of the facets of a side in a step. Boxes of paths are those in the frame that moves
+//! with it: bodies that fly together stay near what they are near, and which facets are near a node
+//! does not depend on the frame in which all of them are seen.
 
 use carom_solid::Bounds;
 
@@ -11,7 +11,8 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
-    /// That of nodes in `dimension` dimensions between positions flat over all nodes.
+    /// The mean over nodes in `dimension` dimensions, each as often as it is given, between
+    /// positions flat over all nodes.
     pub(crate) fn of(
         nodes: impl Iterator<Item = usize>,
         dimension: usize,

@@ -31,4 +31,4 @@ pub use probe::{Probe, Quantity, past_of, von_mises};
 pub use redistribution::redistribute;
 pub(crate) use rigid::check_rigid_modes;
 pub use rigid::{Mode, RigidMotion, Unconstrained, free_motions};
-pub use whole::{Model, Support, Tie, gap_tolerance};
+pub use whole::{Model, Pivot, Support, Tie, gap_tolerance};

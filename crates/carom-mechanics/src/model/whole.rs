@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use carom_algebra::Threads;
-use carom_algebra::sums::dot;
+use carom_algebra::sums::{dot, max_or_nan};
 use carom_solid::{Ask, Configuration, Inverted, Past, Response};
 
 use super::body_instance::BodyInstance;
@@ -26,7 +26,16 @@ pub struct Support {
     /// Global dofs that it constrains.
     pub dofs: Vec<usize>,
     /// Point about which their moment is recorded.
-    pub moment_about: Option<Vec<f64>>,
+    pub moment_about: Option<Pivot>,
+}
+
+/// A point about which a moment is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pivot {
+    /// Fixed in space.
+    Point(Vec<f64>),
+    /// The centre of rotation of an obstacle, which travels with this node.
+    Node(usize),
 }
 
 /// A named tie, whose force is recorded.
@@ -343,8 +352,8 @@ impl Model {
         let past = past_of(&self.parts, body, memory);
         let body = &self.parts[body].body;
         let strains = (0..body.mesh().cell_count()).map(|cell| body.cell_plastic_strain(cell, &past));
-        // A NaN stays.
-        strains.fold(0.0, |most, strain| if strain > most || strain.is_nan() { strain } else { most })
+        // A law of the user's own does not tell it.
+        strains.fold(0.0, max_or_nan)
     }
 
     /// Smallest J over all quadrature points, which remember `memory`.

@@ -10,8 +10,9 @@
 //! accelerations of the impact and does not remove the oscillations (book, "Contact activation"). A
 //! multiplier that would pull is zero, and its gap may open; the others keep g̈ = 0. Massless dofs
 //! keep their velocity: they follow the massive side. With friction both systems have its impulses
-//! and forces (`cone.rs`). With a restitution, energy is returned (`restitution.rs`) before the
-//! accelerations are solved for. Where stick begins, velocities are those of `stick.rs`.
+//! and forces (`cone.rs`). Accelerations and multipliers that are means over a step remain. With a
+//! restitution, energy is returned (`restitution.rs`) before the accelerations are solved for.
+//! Where stick begins, velocities are those of `stick.rs`.
 
 use std::collections::BTreeMap;
 

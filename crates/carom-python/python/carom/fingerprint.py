@@ -1,7 +1,8 @@
 """A fingerprint of a function, or of a law: of its code and of the values that it has with it.
 
 Two functions with the same code, defaults, enclosed values and attributes have the same fingerprint,
-in every process. What a function reads from files or global variables is not seen.
+in every process. What a function reads from files or global variables is not seen. A law that
+changes its attributes while it is called has another fingerprint afterwards.
 """
 
 from __future__ import annotations
@@ -27,6 +28,17 @@ def fingerprint(value: object) -> str:
             f"{value!r} has values with it that are nested too deeply to be compared\n"
             "try: let it read them from a global variable"
         ) from None
+
+
+def fingerprint_of_law(law: object) -> str:
+    """The fingerprint of a law: also of what its classes define."""
+    classes = [vars(of_law) for of_law in type(law).__mro__ if of_law is not object]
+    defined = [(name, value) for names in classes for name, value in names.items() if not _is_internal(name)]
+    return fingerprint((law, defined))
+
+
+def _is_internal(name: str) -> bool:
+    return name.startswith("__") and name.endswith("__")
 
 
 class _Walk:

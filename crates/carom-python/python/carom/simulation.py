@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _carom
 from .case import Case
-from .fingerprint import fingerprint
+from .fingerprint import fingerprint_of_law
 from .progress import thread_count
 from .table import Table
 
@@ -83,10 +83,7 @@ class Simulation:
         self, case: Case, threads: int | None = None, laws: Mapping[str, object] | None = None
     ) -> None:
         laws = dict(laws or {})
-        fingerprints = {
-            material: fingerprint((law, getattr(type(law), "response", None)))
-            for material, law in laws.items()
-        }
+        fingerprints = {material: fingerprint_of_law(law) for material, law in laws.items()}
         self._core = _carom.Simulation(
             case._core, thread_count(threads), case._functions, laws, fingerprints
         )

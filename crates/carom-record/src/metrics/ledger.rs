@@ -102,7 +102,10 @@ pub(super) fn permanent_set(given: &Given) -> Option<f64> {
         let body = name.strip_suffix(".plastic_strain");
         body.is_some_and(|body| given.history.column(&format!("{body}.plastic_work")).is_some())
     };
-    names.filter(is_of_body).filter_map(|name| given.last(name)).reduce(f64::max)
+    let strains: Vec<f64> = names.filter(is_of_body).filter_map(|name| given.last(name)).collect();
+    // A law of the user's own does not tell its strain.
+    let is_known = strains.iter().all(|strain| !strain.is_nan());
+    strains.into_iter().reduce(f64::max).filter(|_| is_known)
 }
 
 pub(super) fn by_contact(given: &Given) -> Option<f64> {

@@ -1,4 +1,4 @@
-//! What meets in a contact: bodies, and obstacles that move.
+//! The parties of a contact: bodies, and obstacles that move.
 
 use super::episode::Episode;
 use crate::{Run, body_of};
@@ -6,10 +6,15 @@ use crate::{Run, body_of};
 /// A body, or an obstacle that moves; none: an obstacle that is fixed.
 pub(super) type Party<'a> = Option<&'a str>;
 
-/// The bodies that meet something but themselves in an episode.
+/// The parties that meet something but themselves in an episode; none if it is not known which met
+/// first, because pairs opened again before the row was written.
 pub(super) fn taking_part(run: &Run, episode: Episode) -> Vec<&str> {
-    let rows = run.contact.iter().filter(|row| episode.contains(run.times(), row.time));
-    let mut names: Vec<&str> = rows.map(|row| &*row.contact).collect();
+    let times = run.times();
+    let rows = || run.contact.iter().filter(|row| episode.contains(times, row.time));
+    if rows().next().is_none_or(|row| row.time > times[episode.start]) {
+        return Vec::new();
+    }
+    let mut names: Vec<&str> = rows().map(|row| &*row.contact).collect();
     names.dedup();
     let met = names.into_iter().filter_map(|name| parties(run, name)).filter(|[one, other]| one != other);
     met.flatten().flatten().collect()

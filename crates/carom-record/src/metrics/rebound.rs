@@ -38,8 +38,7 @@ pub struct Impact<'a> {
     pub others: Vec<Party<'a>>,
     /// Direction of the normal contact impulse on the striker, of length 1.
     pub normal: [f64; 3],
-    /// Mean place of the contact relative to the centre of each of them, weighted with its impulse;
-    /// a body's is not used.
+    /// Mean place of the contact relative to the centre of each of them, weighted with its impulse.
     pub arms: Vec<[f64; 3]>,
     /// −w⁻·n, > 0: with this velocity the striker approaches.
     pub approach: f64,
@@ -47,22 +46,31 @@ pub struct Impact<'a> {
     pub separation: Option<f64>,
 }
 
-/// Forces times places relative to a centre.
-#[derive(Default)]
-struct Moment {
+/// Forces times places relative to the centre of a party.
+struct Moment<'a> {
+    /// Coordinates of the centre by row.
+    center: Vec<&'a [f64]>,
     sum: [f64; 3],
     weight: f64,
 }
 
-impl Moment {
-    fn add(&mut self, weight: f64, place: [f64; 3], center: impl Fn(usize) -> f64) {
-        (0..3).for_each(|i| self.sum[i] += weight * (place[i] - center(i)));
+impl<'a> Moment<'a> {
+    fn about(run: &'a Run, party: Party) -> Self {
+        let center = party.map_or(Vec::new(), |name| vector(&run.history, &format!("{name}.center")));
+        Self { center, sum: [0.0; 3], weight: 0.0 }
+    }
+
+    fn add(&mut self, weight: f64, place: [f64; 3], row: usize) {
+        for (i, x) in place.into_iter().enumerate() {
+            let center = self.center.get(i).and_then(|center| center.get(row));
+            self.sum[i] += weight * (x - center.unwrap_or(&0.0));
+        }
         self.weight += weight;
     }
 
-    /// Mean place relative to the centre.
+    /// Mean place relative to the centre; zero without forces.
     fn arm(&self) -> [f64; 3] {
-        self.sum.map(|sum| sum / self.weight)
+        self.sum.map(|sum| if self.weight == 0.0 { 0.0 } else { sum / self.weight })
     }
 }
 
@@ -120,16 +128,14 @@ impl<'a> Impact<'a> {
             let which = known.unwrap_or(others.len());
             if known.is_none() {
                 others.push(other);
-                moments.push(Moment::default());
+                moments.push(Moment::about(run, other));
             }
             let at = times.partition_point(|time| *time < row.time);
-            let center = other.map_or(Vec::new(), |other| vector(&run.history, &format!("{other}.center")));
-            moments[which].add(row.multiplier, row.point, |i| center.get(i).map_or(0.0, |center| center[at]));
+            moments[which].add(row.multiplier, row.point, at);
             (0..3).for_each(|i| impulse[i] += sign * row.multiplier * row.normal[i]);
         }
         let length = impulse.iter().fold(0.0, |length, x| f64::hypot(length, *x));
-        let acts = |moments: &[Moment]| moments.iter().all(|moment| moment.weight != 0.0);
-        (length > 0.0 && acts(&moments)).then(|| Self {
+        (length > 0.0).then(|| Self {
             striker,
             others,
             normal: impulse.map(|x| x / length),

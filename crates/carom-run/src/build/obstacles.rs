@@ -5,7 +5,7 @@
 
 use carom_case::{Case, FormulaSpec, ObstacleMotion, PrimarySpec, Problem};
 use carom_contact::{Carrier, Faceted, Obstacle, Polyline};
-use carom_mechanics::model::{BodyInstance, Motion, Support, Turn};
+use carom_mechanics::model::{BodyInstance, Motion, Pivot, Support, Turn};
 use carom_solid::{Element, Law, Mesh, Positions};
 
 use super::given::in_space_and_time;
@@ -166,7 +166,8 @@ impl Moving<'_> {
     pub(super) fn support(&self) -> Option<Support> {
         let dofs: Vec<usize> = self.prescribed().collect();
         let name = self.name.to_owned();
-        (!dofs.is_empty()).then_some(Support { name, dofs, moment_about: None })
+        let moment_about = self.carrier.turns().then_some(Pivot::Node(self.carrier.nodes[0]));
+        (!dofs.is_empty()).then_some(Support { name, dofs, moment_about })
     }
 
     /// Description for messages.

@@ -1,7 +1,7 @@
 //! Supports: the dofs that they fix, and the dofs whose reactions are recorded.
 
 use carom_case::{Case, Problem};
-use carom_mechanics::model::{BodyInstance, Model, Support};
+use carom_mechanics::model::{BodyInstance, Model, Pivot, Support};
 
 use super::side::side;
 
@@ -46,7 +46,7 @@ pub(super) fn supported(
         constrained.sort_unstable();
         constrained.dedup();
         if let Some(name) = &spec.name {
-            let moment_about = spec.moment_about.clone().filter(|_| d > 1);
+            let moment_about = spec.moment_about.clone().filter(|_| d > 1).map(Pivot::Point);
             supports.push(Support { name: name.clone(), dofs: constrained, moment_about });
         }
     }

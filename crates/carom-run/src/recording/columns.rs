@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use carom_contact::{FrictionState, Pair, Rows};
-use carom_mechanics::model::Model;
+use carom_mechanics::model::{Model, Pivot};
 use carom_mechanics::{Depths, GridReport, Simulation, State, each_slip};
 
 use serde::{Deserialize, Serialize};
@@ -123,7 +123,11 @@ pub(super) fn row(simulation: &Simulation, measured: &[Rows], since: &Since, of:
             row.extend((0..d).map(|i| {
                 support.dofs.iter().filter(|dof| *dof % d == i).map(|&dof| reaction[dof]).sum::<f64>()
             }));
-            if let Some(about) = &support.moment_about {
+            if let Some(pivot) = &support.moment_about {
+                let about = match pivot {
+                    Pivot::Point(point) => point,
+                    Pivot::Node(node) => &state.y[node * d..(node + 1) * d],
+                };
                 let moment = moment(&support.dofs, &reaction, &state.y, about);
                 row.extend(&moment[if d == 2 { 2..3 } else { 0..3 }]);
             }

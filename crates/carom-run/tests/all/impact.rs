@@ -272,7 +272,7 @@ energy_guard = false
             before = state.impulses[0][1];
         }
         // Multipliers of energy–momentum are means over the step.
-        assert!(let_go > 0 || scheme.starts_with("energy"), "{scheme}");
+        assert_eq!(let_go == 0, scheme.starts_with("energy"), "{scheme}");
     }
 }
 

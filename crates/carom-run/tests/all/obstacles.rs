@@ -5,6 +5,7 @@ use carom_run::case::Case;
 use carom_run::{Rejected, Setup, Simulation, Stopped};
 
 use super::common::{BAR, finish, momenta, schemes, simulation};
+use super::rebound::record;
 
 const DISC: &str = r#"
 title = "A disc that strikes a floor"
@@ -554,4 +555,43 @@ fn impulses_of_an_explicit_scheme_change_the_momentum() {
         assert!(missing.iter().all(|m| m.abs() < 1e-11), "{}: {missing:?}", sim.state().time);
     }
     assert!(sim.state().impulse()[0] < -0.1, "{:?}", sim.state().impulse());
+}
+
+/// The power of an obstacle that travels and turns is R·v + M ω with its reaction R and its torque
+/// M about the centre of rotation. In space an axis of any direction has a torque along it.
+#[test]
+fn the_torque_of_an_obstacle_that_turns_does_its_work() {
+    let paddle = include_str!("../../../../cases/obstacle/paddle.toml");
+    let in_space = r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+[[body]]
+name = "b"
+material = "m"
+element = "Hex8"
+mesh = { shape = "box", min = [0.1, -0.2, 0.02], max = [0.5, 0.2, 0.3], cells = [3, 3, 2] }
+[[contact]]
+name = "paddle"
+secondary = "b.bottom"
+primary = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, motion = { x = "-0.5*t", rotate = "-180*t", about = [0, 0, -0.1], axis = [0, 1, 0] } }
+[time]
+end = 0.1
+step = 5e-4
+scheme = { kind = "newmark", beta = 0.25, gamma = 0.5 }
+[output]
+fields_every = 0
+"#;
+    let newmark = "time.scheme={ kind = \"newmark\", beta = 0.25, gamma = 0.5 }";
+    let omega = -std::f64::consts::PI;
+    for (run, torque) in
+        [(record(paddle, &[newmark]), "paddle.moment"), (record(in_space, &[]), "paddle.moment_y")]
+    {
+        let [time, force, moment, work] =
+            ["time", "paddle.reaction_x", torque, "external_work"].map(|name| run.column(name).unwrap());
+        let power = |row: usize| -0.5 * force[row] + omega * moment[row];
+        let mean = |row: usize| 0.5 * (power(row) + power(row - 1)) * (time[row] - time[row - 1]);
+        let done: f64 = (1..time.len()).map(mean).sum();
+        let expected = work.last().unwrap();
+        assert!(expected.abs() > 1e-3 && (done / expected - 1.0).abs() < 0.02, "{torque}: {done} {expected}");
+    }
 }

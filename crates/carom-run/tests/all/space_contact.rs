@@ -194,10 +194,13 @@ body = [
             y - 1.0
         )
     };
-    let schemes =
-        [r#"{ kind = "moreau-jean", theta = 0.5 }"#, r#"{ kind = "chung-hulbert", rho_inf = 0.8 }"#];
+    let schemes = [
+        r#"{ kind = "moreau-jean", theta = 0.5 }"#,
+        r#"{ kind = "nonsmooth-generalized-alpha", rho_inf = 0.8 }"#,
+        r#"{ kind = "chung-hulbert", rho_inf = 0.8 }"#,
+    ];
     for scheme in schemes {
-        let time = format!("[time]\nend = 0.03\nstep = 1e-3\nscheme = {scheme}\n");
+        let time = format!("[time]\nend = 0.045\nstep = 1e-3\nscheme = {scheme}\n");
         let impulse = |bodies: String| {
             let mut sim = simulation(&format!("{bodies}\n{text}{time}"), &[""; 0]);
             while !sim.finished() {

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use carom_algebra::sums::max_or_nan;
 use carom_algebra::{Mat, Vector, wide};
 
 use super::memory::{Energies, Step};
@@ -173,10 +174,8 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
     fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64 {
         let law = &self.medium(cell).law;
         let points = past.part(cell, self.memory).memory.chunks_exact(law.memory().max(1));
-        // A NaN stays.
-        points
-            .map(|memory| law.plastic_strain_of(memory))
-            .fold(0.0, |most, strain| if strain > most || strain.is_nan() { strain } else { most })
+        // A law of the user's own does not tell it.
+        points.map(|memory| law.plastic_strain_of(memory)).fold(0.0, max_or_nan)
     }
 
     fn quadrature_points(&self, cell: usize, y: &[f64], past: &Past) -> Result<Vec<PointState>, Inverted> {

@@ -56,7 +56,7 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Solid<D, N, S> {
             state.plastic_strain += weight * of_point.plastic_strain;
             state.yielded += of_point.yielded / states.len() as f64;
         }
-        // Of a field that is nowhere negative; its polynomial may be. A NaN stays.
+        // The field is nowhere negative, but its polynomial may be. A NaN stays.
         state.plastic_strain = if state.plastic_strain < 0.0 { 0.0 } else { state.plastic_strain };
         Ok(state)
     }

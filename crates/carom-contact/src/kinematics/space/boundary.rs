@@ -213,47 +213,44 @@ impl Boundary {
     }
 
     /// Whether no blunt joint with another facet of the side follows across an edge of a facet.
-    pub(super) fn ends_at(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
+    pub(super) fn is_end(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
         self.across(facet, edge).is_none_or(|next| {
             !self.is_mirror(next) && (!self.is_of_side(next) || self.is_sharp(facet, edge, y))
         })
     }
 
     /// Whether a point past the edges of a facet lies past the end of the smooth surface around it,
-    /// by more than a tolerance relative to the length of a facet. The facet itself may have a
-    /// corner there, but no edge.
+    /// by more than a tolerance relative to the length of a facet. Where that surface ends at a
+    /// corner of the facet, and at none of its edges, the facet alone does not show it.
     pub(super) fn is_past_rim(&self, facet: usize, point: Vector<3>, tolerance: f64, y: &[f64]) -> bool {
         let normal = self.middle(facet, y).normal;
         let is_of_surface = |other: usize| {
             self.is_of_side(other) && !self.is_mirror(other) && self.is_smooth(other, normal, y)
         };
         let around = self.ring(facet).iter().copied().filter(|&other| is_of_surface(other));
-        let mut nearest = (facet, self.patch(facet).nearest(y, point));
-        for other in around {
-            let found = self.patch(other).nearest(y, point);
-            if found.distance < nearest.1.distance {
-                nearest = (other, found);
-            }
-        }
-        let (facet, found) = nearest;
-        let is_beyond = |edge: usize| {
-            let within = if self.meets_sibling(facet, edge) { 0.0 } else { tolerance };
-            self.ends_at(facet, edge, y) && found.distance > within * self.length(facet, y)
+        let found = |facet: usize| (facet, self.patch(facet).nearest(y, point));
+        let closer = |best: (usize, Nearest), next: (usize, Nearest)| {
+            if next.1.distance < best.1.distance { next } else { best }
         };
-        match found.at {
+        let (closest, nearest) = around.map(found).fold(found(facet), closer);
+        let is_beyond = |of_facet: usize, edge: usize| {
+            let within = if self.meets_sibling(of_facet, edge) { 0.0 } else { tolerance };
+            self.is_end(of_facet, edge, y) && nearest.distance > within * self.length(of_facet, y)
+        };
+        match nearest.at {
             Feature::Inside => false,
-            Feature::Edge(edge) => is_beyond(edge),
+            Feature::Edge(edge) => is_beyond(closest, edge),
             Feature::Corner(corner) => {
-                let node = self.patch(facet).nodes[corner];
-                let meets = |other: usize, edge: usize| {
-                    let nodes = self.patch(other).nodes;
-                    [nodes[edge], nodes[(edge + 1) % self.shape.corners()]].contains(&node)
+                let node = self.patch(closest).nodes[corner];
+                let count = self.shape.corners();
+                let meets = |of_facet: usize, edge: usize| {
+                    let nodes = self.patch(of_facet).nodes;
+                    [nodes[edge], nodes[(edge + 1) % count]].contains(&node)
                 };
-                let ends = |other: usize| {
-                    (0..self.shape.corners()).any(|edge| meets(other, edge) && self.ends_at(other, edge, y))
+                let ends = |of_facet: usize| {
+                    (0..count).any(|edge| meets(of_facet, edge) && is_beyond(of_facet, edge))
                 };
-                found.distance > tolerance * self.length(facet, y)
-                    && self.around(facet, corner).iter().any(|&other| is_of_surface(other) && ends(other))
+                self.around(closest, corner).iter().any(|&other| is_of_surface(other) && ends(other))
             }
         }
     }
@@ -300,9 +297,7 @@ impl Boundary {
 
     /// Whether the smooth surface ends at an edge of a facet, or is continued by its mirror image.
     pub(super) fn is_rim(&self, facet: usize, edge: usize, y: &[f64]) -> bool {
-        self.across(facet, edge).is_none_or(|next| {
-            self.is_mirror(next) || !self.is_of_side(next) || self.is_sharp(facet, edge, y)
-        })
+        self.is_end(facet, edge, y) || self.across(facet, edge).is_some_and(|next| self.is_mirror(next))
     }
 
     /// Whether an edge of a facet is sharp: convex, with a kink of more than 30°.

@@ -234,7 +234,7 @@ impl NodeToPatch {
         past.peek().is_some()
             && (past.any(|(edge, beyond)| {
                 let is_within = beyond <= tolerance && !self.primary.meets_sibling(facet, edge);
-                !is_within && self.primary.ends_at(facet, edge, y)
+                !is_within && self.primary.is_end(facet, edge, y)
             }) || self.primary.is_past_rim(facet, patch.at(y, xi).position, tolerance, y))
     }
 
