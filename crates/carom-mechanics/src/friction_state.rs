@@ -1,10 +1,11 @@
 //! Friction in a state, between steps: the slips of the pairs, which a solved step adds to, the
 //! tractions q along H(y_s), and what pairs with friction did. About the normal, tangents of
-//! springs turn with the facet, or with the simplex of a rigid obstacle, at the end of the step, by
-//! its least-squares rotation in it.
+//! springs turn with the facet at the end of the step, by its least-squares rotation in it, or with
+//! a rigid obstacle.
 
 use std::borrow::Cow;
 
+use carom_algebra::Mat;
 use carom_contact::{FrictionState, Pair, Row, Rows, Tangential, length};
 
 use crate::model::{Contact, Model};
@@ -65,32 +66,54 @@ pub(crate) fn take_slips(equations: &Equations, solved: &Evaluation, state: &mut
     }
 }
 
-/// Turns the tangents of a pair about the normal with its facet, or with a rigid obstacle; one that
-/// is fixed has no nodes.
-fn turn_with_primary(contact: &Contact, pair: &mut Pair, [before, now]: [&[f64]; 2]) {
-    let nodes = contact.kinematics.nodes_of_rotation(pair);
-    if nodes.is_empty() {
-        return;
-    }
+/// Turns the tangents of a pair about the normal with its primary.
+fn turn_with_primary(contact: &Contact, pair: &mut Pair, ends: [&[f64]; 2]) {
+    let angle = match contact.kinematics.rotation_of_primary(pair, ends) {
+        Some(rotation) => twist(&rotation, pair.tangential.tangents),
+        None => twist_of_nodes(contact.kinematics.facet_nodes(pair), pair.tangential.tangents, ends),
+    };
     let [first, second] = pair.tangential.tangents;
-    let share = (nodes.len() as f64).recip();
-    // Components along the tangents of arms from the mean, before and after.
-    let [(from_x, from_y), (to_x, to_y)] = [before, now].map(|y| {
-        let along = |tangent: [f64; 3]| -> Vec<f64> {
-            let at = |node: &usize| (0..3).map(|i| tangent[i] * y[3 * node + i]).sum::<f64>();
-            let mean = share * nodes.iter().map(at).sum::<f64>();
-            nodes.iter().map(|node| at(node) - mean).collect()
-        };
-        (along(first), along(second))
-    });
-    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let across = sum(&from_x, &to_y) - sum(&from_y, &to_x);
-    let along = sum(&from_x, &to_x) + sum(&from_y, &to_y);
-    let (sin, cos) = across.atan2(along).sin_cos();
+    let (sin, cos) = angle.sin_cos();
     pair.tangential.tangents = [
         std::array::from_fn(|i| cos * first[i] + sin * second[i]),
         std::array::from_fn(|i| cos * second[i] - sin * first[i]),
     ];
+}
+
+/// Angle of a rotation about the normal to both tangents, beyond the smallest rotation of that
+/// normal: tan ½φ = w·n/(1 + tr R) with the axial vector w of R − Rᵀ.
+fn twist(rotation: &Mat<3>, [first, second]: [[f64; 3]; 2]) -> f64 {
+    let r = &rotation.0;
+    let mut along = 0.0;
+    let mut trace = 0.0;
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        let k = (i + 2) % 3;
+        along += (first[j] * second[k] - first[k] * second[j]) * (r[k][j] - r[j][k]);
+        trace += r[i][i];
+    }
+    2.0 * along.atan2(1.0 + trace)
+}
+
+/// Angle of the least-squares rotation of nodes in the plane of the tangents; zero of an obstacle,
+/// which has none.
+fn twist_of_nodes(nodes: &[usize], tangents: [[f64; 3]; 2], ends: [&[f64]; 2]) -> f64 {
+    if nodes.is_empty() {
+        return 0.0;
+    }
+    let share = (nodes.len() as f64).recip();
+    // Components along the tangents of arms from the mean, before and after.
+    let [[from_x, from_y], [to_x, to_y]] = ends.map(|y| {
+        tangents.map(|tangent| {
+            let at = |node: &usize| (0..3).map(|i| tangent[i] * y[3 * node + i]).sum::<f64>();
+            let mean = share * nodes.iter().map(at).sum::<f64>();
+            nodes.iter().map(|node| at(node) - mean).collect::<Vec<f64>>()
+        })
+    });
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let across = sum(&from_x, &to_y) - sum(&from_y, &to_x);
+    let along = sum(&from_x, &to_x) + sum(&from_y, &to_y);
+    across.atan2(along)
 }
 
 /// Adds a step of this size to what pairs with friction did.

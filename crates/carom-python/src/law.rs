@@ -49,11 +49,6 @@ impl Law {
         Ok(Self { name, object: Arc::new(object.clone().unbind()), memory, failure })
     }
 
-    /// Count of numbers that a point remembers.
-    pub(crate) fn memory(&self) -> usize {
-        self.memory
-    }
-
     fn called(&self, py: Python<'_>, f: [[f64; 3]; 3], memory: &[f64]) -> PyResult<Point> {
         let numpy = py.import("numpy")?;
         let numbers = |values: &Bound<'_, PyAny>, count: usize, what: &str| -> PyResult<Vec<f64>> {

@@ -56,6 +56,16 @@ impl Carrier {
         self.nodes.len() > 1
     }
 
+    /// F = ∂x/∂p of an obstacle that turns, its rotation since the start.
+    pub(super) fn gradient(&self, y: &[f64], dimension: usize) -> Mat<3> {
+        let coordinate = |a: usize, i: usize| y[self.nodes[a] * dimension + i];
+        let mut f = Mat::<3>::identity();
+        for a in 1..self.nodes.len() {
+            (0..dimension).for_each(|i| f.0[i][a - 1] = (coordinate(a, i) - coordinate(0, i)) / self.length);
+        }
+        f
+    }
+
     /// The point of the obstacle that lies at a place in space, at the positions `y` of all nodes.
     pub(super) fn local(&self, place: Point, y: &[f64], dimension: usize) -> Local {
         let node = |a: usize| -> Point {
@@ -68,12 +78,7 @@ impl Carrier {
         let mut inverse = None;
         let mut slopes = [[0.0; 3]; 4];
         if self.turns() {
-            let mut f = Mat::<3>::identity();
-            for a in 1..self.nodes.len() {
-                let end = node(a);
-                (0..dimension).for_each(|i| f.0[i][a - 1] = (end[i] - origin[i]) / self.length);
-            }
-            let back = f.inverse();
+            let back = self.gradient(y, dimension).inverse();
             arm = back.apply(&Vector(arm)).0;
             for a in 1..self.nodes.len() {
                 weights[a] = arm[a - 1] / self.length;

@@ -4,7 +4,7 @@
 //! facets; in the plane convex corners and round parts of an obstacle against facets; and
 //! coefficients of a pressure field with bounds for single nodes.
 
-use carom_algebra::Threads;
+use carom_algebra::{Mat, Threads};
 
 use super::obstacle::Tip;
 use super::{Kinematics, NodalPressure, Passed};
@@ -157,9 +157,9 @@ impl Kinematics for Combined {
         part.facet_nodes(&pair)
     }
 
-    fn nodes_of_rotation(&self, pair: &Pair) -> &[usize] {
+    fn rotation_of_primary(&self, pair: &Pair, ends: [&[f64]; 2]) -> Option<Mat<3>> {
         let (part, pair) = self.of_pair(pair);
-        part.nodes_of_rotation(&pair)
+        part.rotation_of_primary(&pair, ends)
     }
 
     fn is_on_facet(&self, pair: &Pair) -> bool {

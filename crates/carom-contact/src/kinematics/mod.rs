@@ -66,7 +66,7 @@ pub use swept::{Crossings, SpaceHit, Swept, SweptEdges, SweptPatch, SweptTest};
 pub use tip_to_facet::TipToFacet;
 pub(crate) use way::amplification;
 
-use carom_algebra::Threads;
+use carom_algebra::{Mat, Threads};
 
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
@@ -125,10 +125,10 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
-    /// Global numbers of the nodes with which the tangents of a pair turn about its normal: those
-    /// of its facet, or of the simplex that carries a rigid primary.
-    fn nodes_of_rotation(&self, pair: &Pair) -> &[usize] {
-        self.facet_nodes(pair)
+    /// Rotation of a rigid primary between two positions; none of a deformable one, or of one that
+    /// does not turn.
+    fn rotation_of_primary(&self, _pair: &Pair, _ends: [&[f64]; 2]) -> Option<Mat<3>> {
+        None
     }
 
     /// Whether the contact point of a pair lies on its facet, not on its extension.

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_algebra::Vector;
+use carom_algebra::{Mat, Vector};
 
 use super::carrier::{Carrier, Local};
 use super::facing::NEAR_END;
@@ -284,8 +284,10 @@ impl Kinematics for NodeToObstacle {
         &[]
     }
 
-    fn nodes_of_rotation(&self, _: &Pair) -> &[usize] {
-        self.carriers()
+    fn rotation_of_primary(&self, _: &Pair, ends: [&[f64]; 2]) -> Option<Mat<3>> {
+        let carrier = self.carrier.as_ref().filter(|carrier| carrier.turns())?;
+        let [before, now] = ends.map(|y| carrier.gradient(y, self.dimension));
+        Some(now * before.inverse())
     }
 
     fn facets(&self, _: usize) -> usize {

@@ -573,6 +573,7 @@ mesh = { shape = "box", min = [0.1, -0.2, 0.02], max = [0.5, 0.2, 0.3], cells = 
 [[contact]]
 name = "paddle"
 secondary = "b.bottom"
+enforcement = "penalty"
 primary = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, motion = { x = "-0.5*t", rotate = "-180*t", about = [0, 0, -0.1], axis = [0, 1, 0] } }
 [time]
 end = 0.1
