@@ -3,8 +3,8 @@
 use carom_contact::kinematics::apart::Apart;
 use carom_solid::Bounds;
 
-/// Nodes 0 and 2 beside a facet at the origin: boxes 3 apart, A = 1, no margins. Both may move
-/// by 1.5.
+/// Nodes 0 and 2 beside a facet at the origin: boxes 3 apart, A = 1, no margins. Both may move by
+/// 0.5: seen from a frame that moves by 1 against them, the end of a path is 1.5 away.
 #[test]
 fn holds_until_the_boxes_may_meet() {
     let mut apart = Apart::new([2, 0, 2], 2, 1.0);
@@ -18,8 +18,8 @@ fn holds_until_the_boxes_may_meet() {
         moved[dof] += x;
         moved
     };
-    assert!(apart.holds(0.0, [&with(4, -1.49), &with(0, 1.49)]));
-    assert!(!apart.holds(0.0, [&with(4, -1.51), &y]) && !apart.holds(0.0, [&y, &with(1, 1.51)]));
+    assert!(apart.holds(0.0, [&with(4, -0.49), &with(0, 0.49)]));
+    assert!(!apart.holds(0.0, [&with(4, -0.51), &y]) && !apart.holds(0.0, [&y, &with(1, 0.51)]));
     // Node 1 belongs to neither; a wider margin was not searched.
     assert!(apart.holds(0.0, [&y, &with(3, 5.0)]) && !apart.holds(0.1, [&y, &y]));
     assert!(!apart.holds(0.0, [&y, &with(4, f64::NAN)]));
