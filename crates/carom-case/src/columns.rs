@@ -182,7 +182,7 @@ impl<'a> Recorded<'a> {
             |motion: &ObstacleMotion| matches!(motion, ObstacleMotion::Prescribed { rotate: Some(_), .. });
         let obstacles = prescribed.map(|contact| (&contact.name, turns(&contact.motion).then_some(torque)));
         for (name, moment) in supports.chain(obstacles) {
-            let what = "force of the support on the bodies";
+            let what = "force of the support, or of the obstacle, on the bodies";
             columns.vector(&format!("{name}.reaction"), &label.force, what);
             if let Some(what) = moment {
                 columns.rotational(&format!("{name}.moment"), &label.moment, what);

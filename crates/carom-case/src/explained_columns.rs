@@ -31,7 +31,7 @@ time = { end = 1.0, step = 0.5, scheme = { kind = "bathe", rho_inf = 0.5 } }
 name = "CONTACT"
 secondary = "BODY.bottom"
 mu = 0.1
-primary = { plane = { point = [0, 0, -1], normal = [0, 0, 1] }, motion = { x = "t" } }
+primary = { plane = { point = [0, 0, -1], normal = [0, 0, 1] }, motion = { x = "t", rotate = "t", about = [0, 0, 0], axis = [0, 0, 1] } }
 "#;
 
 /// Columns of one meaning.

@@ -190,10 +190,13 @@ impl TipToFacet {
             let outward = self.side.facet(*facet).at(Places::new(y, 2), 0.0).normal;
             self.faces(tip, center, outward, y).is_some()
         };
+        self.closest(center, y, faces).or_else(|| self.closest(center, y, |_| true))
+    }
+
+    /// The nearest facet of the whole boundary to a point, of those asked for.
+    fn closest(&self, center: Vector<2>, y: &[f64], counts: impl Fn(&usize) -> bool) -> Option<usize> {
         let distance = |facet: &usize| self.side.distance(*facet, center, y);
-        let nearest = |a: &usize, b: &usize| distance(a).total_cmp(&distance(b));
-        let all = || 0..self.side.all();
-        all().filter(faces).min_by(nearest).or_else(|| all().min_by(nearest))
+        (0..self.side.all()).filter(counts).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
     /// Adds the pairs of parts that keep a depth and have none: nearer to the end of the side than
@@ -298,8 +301,9 @@ impl Kinematics for TipToFacet {
         self.side.facets()
     }
 
-    /// Signed distance to those facets of the whole boundary, of which the side is a part, on which
-    /// the part can press; infinite where the nodes of the nearest facet hold the part.
+    /// Signed distance to the body, and of a part that reaches into it to those facets of the whole
+    /// boundary, of which the side is a part, on which it can press; infinite where the nodes of
+    /// the nearest facet hold the part.
     fn signed_distance(&self, tip: usize, y: &[f64]) -> Option<f64> {
         let all = self.with_centers(y);
         let center = Places::new(&all, 2).at(self.nodes + tip);
@@ -307,7 +311,10 @@ impl Kinematics for TipToFacet {
         if !self.tips[tip].is_narrow(self.side.length(nearest, Places::new(y, 2))) {
             return Some(f64::INFINITY);
         }
-        Some(self.side.depth(nearest, center, y).distance - self.tips[tip].radius + self.kept(tip))
+        let distance = |facet: usize| self.side.depth(facet, center, y).distance - self.tips[tip].radius;
+        // Outside, the facets on which it can press may be those on the far side.
+        let outside = self.closest(center, y, |_| true).map(distance).filter(|distance| *distance > 0.0);
+        Some(outside.unwrap_or_else(|| distance(nearest)) + self.kept(tip))
     }
 
     fn search(

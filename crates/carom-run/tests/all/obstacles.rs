@@ -596,3 +596,14 @@ fields_every = 0
         assert!(expected.abs() > 1e-3 && (done / expected - 1.0).abs() < 0.02, "{torque}: {done} {expected}");
     }
 }
+
+/// Corners of a thin obstacle beside a disc are outside it, and not behind its far side.
+#[test]
+fn corners_beside_a_body_are_outside() {
+    let thin = "contact.floor.primary={ polyline = { points = [[-2.0, -0.2], [2.0, -0.2], [2.0, 0.0], [-2.0, 0.0], [-2.0, -0.2]], radius = 0.05 }, motion = { rotate = \"60*t\", about = [0.0, -0.1] } }";
+    let sim = simulation(DISC, &[thin]);
+    let kinematics = &sim.model().contacts[0].kinematics;
+    let distance = |node: usize| kinematics.signed_distance(node, &sim.state().y).unwrap();
+    let least = (0..kinematics.secondary().len()).map(distance).fold(f64::INFINITY, f64::min);
+    assert!((least - 0.02).abs() < 1e-9, "{least}");
+}
