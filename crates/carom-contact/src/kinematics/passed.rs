@@ -43,11 +43,11 @@ pub(super) struct Paths<'a, B> {
 /// Boxes of the paths of facets and nodes in a step.
 #[derive(Clone, Copy)]
 pub(super) struct Boxes<'a> {
-    /// Those of the facets.
+    /// Hierarchy of the boxes of the facets' paths.
     pub tree: &'a Tree,
-    /// Their frame.
+    /// Frame in which all boxes are seen.
     pub drift: Drift,
-    /// That of a node.
+    /// Box of the path of a node.
     pub of_node: &'a dyn Fn(usize) -> Bounds,
 }
 
