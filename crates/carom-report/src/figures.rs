@@ -82,9 +82,10 @@ fn probes(run: &Recorded, histories: &Histories) -> Option<Figure> {
 fn reactions(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let mut panels = Vec::new();
     let columns = run.history.columns.iter().map(|column| column.name.as_str());
-    let stems = columns.filter_map(|name| {
-        name.strip_suffix("_x").filter(|stem| stem.ends_with(".reaction") || stem.ends_with(".moment"))
-    });
+    // A moment in the plane has one component, without an axis in its name.
+    let stems = columns
+        .map(|name| name.strip_suffix("_x").unwrap_or(name))
+        .filter(|stem| stem.ends_with(".reaction") || stem.ends_with(".moment"));
     for stem in distinct(stems) {
         let (name, what) = stem.rsplit_once('.').unwrap_or((stem, ""));
         let lines = Line::vector_of(run, stem, if what == "moment" { "M" } else { "R" }, name);

@@ -38,10 +38,10 @@ impl Line {
         Self::vector(run, stem, symbol).into_iter().map(named).collect()
     }
 
-    /// The components of a vector that are recorded.
+    /// The components of a vector that are recorded; of a moment in the plane the only one.
     pub(crate) fn vector(run: &Run, stem: &str, symbol: &str) -> Vec<Self> {
         let component = |axis: &str| Self::new(format!("{stem}_{axis}"), format!("{symbol}_{{{axis}}}"));
-        let all = ["x", "y", "z"].map(component).into_iter();
+        let all = ["x", "y", "z"].map(component).into_iter().chain([Self::new(stem, symbol)]);
         all.filter(|line| run.column(&line.column).is_some()).collect()
     }
 }
