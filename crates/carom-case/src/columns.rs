@@ -210,7 +210,10 @@ const ENERGIES: [(&str, &str); 10] = [
     ("strain", "strain energy"),
     ("potential", "potential of constant conservative loads"),
     ("total", "kinetic + strain + potential"),
-    ("external_work", "work of the loads without potential and of the supports, cumulative"),
+    (
+        "external_work",
+        "work of the loads without potential, of the supports and of moved obstacles, cumulative",
+    ),
     (
         "contact_work",
         "work of the contact forces without friction on the bodies and of projections, cumulative",

@@ -54,7 +54,8 @@ pub struct Draft {
     /// A load: traction or pressure on sides, or body force in a body.
     #[key(Tables(&LoadKeys::TABLE), optional = "", with = spec::loads)]
     pub(crate) load: Vec<Option<LoadSpec>>,
-    /// Start from the final state of another run instead of the reference positions.
+    /// Start from the final state of another run instead of the reference positions. Time starts at
+    /// 0 again, also in the formulas of loads and motions.
     #[key(optional = "")]
     pub(crate) initial: Option<InitialSpec>,
     /// A manufactured solution: load, boundary motion and initial state are derived from it, and

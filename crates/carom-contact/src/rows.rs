@@ -209,10 +209,24 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
-    /// The tangents of a slip in space, whose rows begin with `first`: their gradients for the
-    /// first node. Zero in the plane, where the normal gives the tangent.
+    /// The tangents of a slip in space, whose rows begin with `first`: those nearest to their
+    /// gradients for the first node, which over a joint are means of tangents to several facets,
+    /// shorter across it. The nearest ones do not turn, however often they are carried there and
+    /// back. Zero in the plane, where the normal gives the tangent.
     pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {
-        if self.dimension == 3 { [first, first + 1].map(|row| self.row(row).first()) } else { [[0.0; 3]; 2] }
+        if self.dimension == 2 {
+            return [[0.0; 3]; 2];
+        }
+        let [along, across] = [first, first + 1].map(|row| Vector(self.row(row).first()));
+        // The orthogonal factor of a polar decomposition, by the root of the Gram matrix.
+        let mixed = along.dot(&across);
+        let squares = [along.dot(&along), across.dot(&across)];
+        let area = (squares[0] * squares[1] - mixed * mixed).sqrt();
+        let scale = area * (squares[0] + squares[1] + 2.0 * area).sqrt();
+        let unit = |own: Vector<3>, of_other: f64, other: Vector<3>| {
+            (own * (of_other + area) - other * mixed) * scale.recip()
+        };
+        [unit(along, squares[1], across).0, unit(across, squares[0], along).0]
     }
 
     /// The row with a given index.

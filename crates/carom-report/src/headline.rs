@@ -215,9 +215,8 @@ impl Facts<'_> {
     fn work(&self) -> Option<Number> {
         let work = self.run.column("external_work")?;
         let size = work.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        (size > 0.0).then(|| {
-            Number::new("Work of loads and supports", self.energy(*work.last().unwrap_or(&0.0)), "at the end")
-        })
+        (size > 0.0)
+            .then(|| Number::new("External work", self.energy(*work.last().unwrap_or(&0.0)), "at the end"))
     }
 
     fn friction(&self) -> Option<Number> {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use carom_case::{Case, InitialSpec, Problem, Velocities};
 use carom_mechanics::model::{Manufactured, Model, Tie, past_of};
-use carom_mechanics::{Grid, InitialState, State};
+use carom_mechanics::{Grid, InitialState, State, inside};
 use carom_record::{Manifest, Status, last_checkpoint};
 use carom_solid::Mesh;
 
@@ -154,12 +154,25 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
     carry(model, &mut before, &directory.to_string())?;
     let free =
         Continued { case, model, old: &old, state: &state, first }.go_on(spec.velocities, &mut before)?;
-    let Found { pairs, slid, left } = initial_pairs::found(case, model, &before.y, &old, &state, &free);
+    let depths = || depths_of(&old, &state);
+    let Found { pairs, slid, left } =
+        initial_pairs::found(case, model, &before.y, &old, &state, &free, depths);
     if let Some(problem) = initial_pairs::overlap(case, model, &before.y, &left) {
         return Err(vec![problem]);
     }
     (before.pairs, before.slid) = (pairs, slid);
     Ok(before)
+}
+
+/// How deep the bodies of each contact of a run are at its end; empty if it cannot be built again,
+/// with laws of the user's own.
+fn depths_of(old: &Case, state: &State) -> Vec<f64> {
+    let Ok(whole) = build::build(old, &build::Materials::default()) else { return Vec::new() };
+    let mut depths = vec![0.0; whole.contacts.len()];
+    for place in inside(&whole, &state.y, 0.0) {
+        depths[place.contact] = place.depth;
+    }
+    depths
 }
 
 /// Memory of the materials of a model, as the run left it: for each body, of its materials there.

@@ -29,12 +29,13 @@ const LEFT: f64 = 0.03;
 pub(crate) struct Found {
     pub(crate) pairs: Vec<Vec<Pair>>,
     pub(crate) slid: BTreeMap<(usize, usize), FrictionState>,
-    /// Depth that the other run may have left in each contact, relative to its longest facet.
+    /// Depth that the other run may have left in each contact.
     pub(crate) left: Vec<f64>,
 }
 
 /// The pairs of a model at positions `y`, from the other run and its last state.
-/// `free`: contacts whose obstacle is free and goes on where it was.
+/// `free`: contacts whose obstacle is free and goes on where it was; `depths`: how deep the bodies
+/// of each contact of that run are at its end.
 pub(crate) fn found(
     case: &Case,
     model: &Model,
@@ -42,6 +43,7 @@ pub(crate) fn found(
     old: &Case,
     state: &State,
     free: &[usize],
+    depths: impl Fn() -> Vec<f64>,
 ) -> Found {
     let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new(), left: Vec::new() };
     let before = counterparts(case, model, y, old, state);
@@ -49,7 +51,8 @@ pub(crate) fn found(
         let Some(before) = before[own] else {
             let is_met = |k: &usize| have_the_same_bodies(&old.contacts[*k], spec);
             let met: Vec<usize> = (0..old.contacts.len()).filter(is_met).collect();
-            found.left.push(if met.is_empty() { DEEP } else { left_by_another(spec) });
+            let share = if met.is_empty() { DEEP } else { left_by_another(spec) };
+            found.left.push(share * longest_facet(model, own, y));
             let pressed = met.iter().any(|k| state.pairs.get(*k).is_some_and(|pairs| is_pressed(pairs)));
             found.pairs.push(if pressed { touching(model, contact, y) } else { Vec::new() });
             continue;
@@ -60,10 +63,16 @@ pub(crate) fn found(
             other.method == spec.method && other.enforcement.is_exact() == spec.enforcement.is_exact();
         let stays = other.primary == spec.primary && other.motion.is_fixed() && spec.motion.is_fixed();
         let is_there = stays || free.contains(&own);
+        let length = longest_facet(model, own, y);
         found.left.push(match (is_there, goes_on) {
             (true, true) => f64::INFINITY,
-            (true, false) => left_by_another(spec),
-            (false, _) => DEEP,
+            (true, false) => left_by_another(spec) * length,
+            // An obstacle that stands where that run left it is as deep as there.
+            (false, true) if !spec.enforcement.is_exact() => {
+                let depth = depths().get(before).copied().unwrap_or(0.0);
+                f64::max(DEEP * length, (1.0 + DEEP) * depth)
+            }
+            (false, _) => DEEP * length,
         });
         let pairs = if goes_on && is_there {
             pressed.to_vec()
@@ -171,17 +180,19 @@ fn have_the_same_bodies(one: &ContactSpec, other: &ContactSpec) -> bool {
     one.primary.side().is_some() == other.primary.side().is_some() && bodies(one) == bodies(other)
 }
 
+/// Length of the longest facet of a contact.
+fn longest_facet(model: &Model, contact: usize, y: &[f64]) -> f64 {
+    if model.dimension == 1 {
+        return model.scale;
+    }
+    let of_sides = model.contacts[contact].facets.iter();
+    of_sides.map(|(_, facets)| longest(facets, y, model.dimension)).fold(0.0, f64::max)
+}
+
 /// The problem of a contact whose bodies overlap by more than the other run may have `left`: it did
 /// not have the contact, or had it by springs, or its obstacle stands elsewhere now.
 pub(crate) fn overlap(case: &Case, model: &Model, y: &[f64], left: &[f64]) -> Option<Problem> {
-    let length = |contact: usize| match model.dimension {
-        1 => model.scale,
-        dimension => {
-            let of_sides = model.contacts[contact].facets.iter();
-            of_sides.map(|(_, facets)| longest(facets, y, dimension)).fold(0.0, f64::max)
-        }
-    };
-    let is_deeper = |place: &DeepPlace| place.depth > left[place.contact] * length(place.contact);
+    let is_deeper = |place: &DeepPlace| place.depth > left[place.contact];
     let found = inside(model, y, 0.0).into_iter().find(is_deeper)?;
     let DeepPlace { contact, node, depth, .. } = found;
     let spec = &case.contacts[contact];

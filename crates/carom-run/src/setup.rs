@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use carom_algebra::LinearError;
 use carom_case::{
-    Case, ContactLaw, ContactPoint, ContactSpec, Fallback, Overlap, Problem, Problems, TangentRule,
+    Case, ContactLaw, ContactPoint, ContactSpec, Fallback, ObstacleMotion, Overlap, Problem, Problems,
+    TangentRule,
 };
 use carom_mechanics::model::Model;
 use carom_mechanics::stability::{SAFETY, cell_step, stable_step};
@@ -241,9 +242,15 @@ fn no_start(case: &Case, placed: bool, obstacles: &[(Range<usize>, String)], rej
         && let Some(contact) = case.contacts.iter().find(|contact| contact.name == *name)
     {
         let what = format!("the obstacle of contact \"{name}\" would jump at the start");
-        let why = case.in_units(&format!("its motion is {distance:.3e} [length] at t = 0"));
+        let only_turns =
+            matches!(&contact.motion, ObstacleMotion::Prescribed { moves, .. } if moves.is_empty());
+        let (key, why) = if only_turns {
+            ("primary.motion.rotate", "its angle is not zero at t = 0".to_owned())
+        } else {
+            ("primary.motion", case.in_units(&format!("its motion is {distance:.3e} [length] at t = 0")))
+        };
         let help = "subtract from each formula its value at t = 0, and place the obstacle where it begins";
-        return Problem::new(contact.path("primary"), what, why, help);
+        return Problem::new(contact.path(key), what, why, help);
     }
     let (path, what, help) = match rejected {
         Rejected::NoValue(value) => {

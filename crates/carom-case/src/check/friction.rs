@@ -93,12 +93,7 @@ impl Check<'_> {
         }
         if let Some(mu) = constant.filter(|mu| *mu < 0.0) {
             let what = format!("`mu` must be a number ≥ 0, not {mu}");
-            self.add(
-                contact.path("mu"),
-                what,
-                "friction takes energy",
-                "give a positive number, or leave it out",
-            );
+            self.add(contact.path("mu"), what, "friction takes energy", "give 0 or a positive number");
         }
     }
 }

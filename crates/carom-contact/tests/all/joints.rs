@@ -1,7 +1,7 @@
 //! Contact over the joints of facets, whose gap is the mean of those to all of them: derivatives
 //! against differences, balance, and the symmetry that no single facet has.
 
-use carom_algebra::jacobian_error;
+use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{
     Boundary, Detection, Kinematics, NodeToFacet, NodeToPatch, Pair, Pairing, Rows, Surface,
 };
@@ -153,4 +153,31 @@ fn a_joint_that_cannot_be_measured_adds_no_row() {
     contact.slip(&single, y, y, &mut slips).unwrap();
     assert!(contact.slip(&joint, y, y, &mut slips).is_err());
     assert_eq!(slips.len(), 1);
+}
+
+/// The mean of the tangents to several facets is shorter across a kink than along it: tangents that
+/// are carried over a joint again and again stay where they are.
+#[test]
+fn tangents_do_not_turn_over_a_joint() {
+    let (contact, y, mut pair) = in_space();
+    contact.measure(&mut pair, &y, &mut Rows::new(3)).unwrap();
+    pair.tangential.tangents = [[0.8, 0.6, 0.0], [-0.6, 0.8, 0.0]];
+    let mut rows = Rows::new(3);
+    let mut carry = |pair: &mut Pair| {
+        rows.clear();
+        contact.slip(pair, &y, &y, &mut rows).unwrap();
+        pair.tangential.tangents = rows.tangents(0);
+    };
+    (0..3).for_each(|_| carry(&mut pair));
+    let [along, across] = pair.tangential.tangents.map(Vector);
+    for (product, expected) in
+        [(along.dot(&along), 1.0), (across.dot(&across), 1.0), (along.dot(&across), 0.0)]
+    {
+        assert!((product - expected).abs() < 1e-14, "{product}");
+    }
+    // By half of a degree, had the means been normalised one after the other.
+    assert!((along[1] / along[0] - 0.75).abs() < 2e-3, "{along:?}");
+    (0..1000).for_each(|_| carry(&mut pair));
+    let turned = (Vector(pair.tangential.tangents[0]) - along).norm();
+    assert!(turned < 1e-12, "{turned:e}");
 }

@@ -124,7 +124,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::None,
         "max_t [E(t) − E(s) − m⁺] / max(E*, Σ |ΔW|), E = total − external_work, at its minimum before t at s; m = work ahead of the velocities from s to t (theory/energy.md)",
         "Krenk 2006",
-        "largest rise of the energy (total − work of loads and supports) above its lowest value before, less what velocities of the α family are ahead of the work while forces change; divided by the largest kinetic + strain energy or, if larger, the sum of all |work|",
+        "largest rise of the energy (total − work of loads, supports and obstacles) above its lowest value before, less what velocities of the α family are ahead of the work while forces change; divided by the largest kinetic + strain energy or, if larger, the sum of all |work|",
         ledger::created,
     ),
     d(

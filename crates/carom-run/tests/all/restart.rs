@@ -286,6 +286,57 @@ tolerance = 1e-14
     }
 }
 
+/// A block on springs goes on where their obstacle has carried it, as deep as it was there; deeper
+/// than that its springs would drive it away.
+#[test]
+fn springs_go_on_where_their_obstacle_has_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = |load: &str, floor: &str, time: &str, initial: &str| {
+        format!(
+            r#"
+dimension = 2
+material = [{{ name = "rubber", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }}]
+[[body]]
+name = "block"
+material = "rubber"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.6], cells = [5, 3] }}
+[[load]]
+on = ["block.top"]
+traction = {load}
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = {{ plane = {{ point = {floor} }}
+mu = 0.5
+enforcement = "penalty"
+[time]
+{time}
+{initial}
+"#
+        )
+    };
+    let lifted = r#"[0.0, 0.0], normal = [0.0, 1.0] }, motion = { y = "0.05*t" }"#;
+    let time = "end = 1.0\nstep = 0.1\nscheme = { kind = \"static\" }";
+    let first = text(r#"["t", "-5*t"]"#, lifted, time, "");
+    let initial = initial_state(&first, &folder.path().join("lifted"));
+    let at_rest = finish(simulation(&first, &[""; 0]));
+    let time = "end = 0.02\nstep = 4e-3\nscheme = { kind = \"chung-hulbert\", rho_inf = 0.5 }";
+    let second = |height: f64| {
+        let floor = format!("[0.0, {height}], normal = [0.0, 1.0] }}");
+        text("[1.0, -5.0]", &floor, time, &initial)
+    };
+    let goes_on = finish(simulation(&second(0.05), &[""; 0]));
+    let [then, now] = [&at_rest, &goes_on].map(|run| run.state().contact_forces[0]);
+    for i in 0..2 {
+        assert!((then[i] - now[i]).abs() < 1e-9 * then[1], "{then:?} {now:?}");
+    }
+    let fastest = goes_on.state().v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    assert!(fastest < 1e-9, "{fastest:e}");
+    let problems = carom_run::Setup::new(&case_of(&second(0.06), &[""; 0])).start().err().unwrap();
+    assert!(problems[0].what.contains("overlap at the start"), "{problems:?}");
+}
+
 /// A block that is dragged over another one and goes on where the run ended: velocities at the end
 /// of a step ring from node to node, and do not decide which nodes stick. The run of both parts is
 /// the reference.
