@@ -1,7 +1,7 @@
 //! "Did you mean": the candidate that a word means or is nearest to.
 
 /// Words that other programs use, or symbols, and what they mean here.
-const OTHER_WORDS: [(&str, &str); 21] = [
+const OTHER_WORDS: [(&str, &str); 20] = [
     ("dt", "step"),
     ("e", "young"),
     ("explicit", "central-difference"),
@@ -13,8 +13,7 @@ const OTHER_WORDS: [(&str, &str); 21] = [
     ("obstacle", "contact"),
     ("point", "at"),
     ("position", "at"),
-    ("reaction", "reaction_x"),
-    ("reactions", "reaction_x"),
+    ("reactions", "SUPPORT.reaction_x"),
     ("rho", "density"),
     ("slave", "secondary"),
     ("t_end", "end"),

@@ -4,7 +4,11 @@
 use std::collections::BTreeMap;
 
 use super::facets::OnFacet;
-use crate::pair::{Pair, PairEvent, Pairing, in_order};
+use super::joint::AT_JOINT;
+use crate::pair::{Left, Pair, PairEvent, Pairing, in_order};
+
+/// Difference of depths, over the size of a facet, that is round-off.
+const SAME: f64 = 1e-9;
 
 /// The facet to which a pair belongs whose closest point is past the end of its facet.
 pub(super) enum Next {
@@ -56,10 +60,12 @@ impl Held {
 struct Moves<'a> {
     held: Held,
     /// Facet from which each node was handed over.
-    left: &'a mut BTreeMap<usize, usize>,
+    left: &'a mut BTreeMap<usize, Left>,
     events: &'a mut Vec<PairEvent>,
     /// Second pairs of nodes in concave corners.
     concave: Vec<Pair>,
+    /// Closed pairs that give way to the open pair of their node with another facet.
+    yielding: Vec<(Pair, usize)>,
     /// Whether anything but an inactive pair has changed.
     changed: bool,
 }
@@ -67,7 +73,8 @@ struct Moves<'a> {
 impl Moves<'_> {
     /// Moves a pair to the point ξ of another facet.
     fn hand_over(&mut self, pair: &mut Pair, facet: usize, xi: [f64; 2]) {
-        self.left.insert(pair.node, pair.facet);
+        let returned = self.left.get(&pair.node).is_some_and(|left| left.returned || left.facet == facet);
+        self.left.insert(pair.node, Left { facet: pair.facet, returned });
         self.held.leave(pair);
         self.held.take(pair.node, facet);
         pair.facet = facet;
@@ -86,6 +93,18 @@ impl Moves<'_> {
     }
 }
 
+/// How the pairs of a side and its facets are measured.
+pub(super) struct Measured<'a> {
+    /// Whether a pair is well past the end of its facet.
+    pub is_past: &'a dyn Fn(&Pair) -> bool,
+    /// Whether a pair is within the reach of its facet.
+    pub is_near: &'a dyn Fn(&Pair) -> bool,
+    /// How deep a node is inside a facet at ξ.
+    pub depth: &'a dyn Fn(usize, usize, [f64; 2]) -> f64,
+    /// Size of a facet.
+    pub size: &'a dyn Fn(usize) -> f64,
+}
+
 /// A rule for pairs that slide over the facets of a primary side.
 pub(super) struct Sliding<'a, N> {
     pub nodes: &'a [usize],
@@ -95,21 +114,29 @@ pub(super) struct Sliding<'a, N> {
     pub next: N,
 }
 
-impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
-    /// Hands over, adds or drops pairs between solves. `is_near`: whether a pair is within the
-    /// reach of its facet; `enters`: whether a node is inside a facet at ξ. Returns whether
-    /// anything but an inactive pair changed.
+impl<N: Fn(&Pair, Option<Left>) -> Next> Sliding<'_, N> {
+    /// Hands over, adds or drops pairs between solves. Returns whether anything but an inactive
+    /// pair changed.
     pub(super) fn search(
         &self,
         pairing: &mut Pairing,
         held: Held,
-        is_near: impl Fn(&Pair) -> bool,
-        enters: impl Fn(usize, usize, [f64; 2]) -> bool,
+        measured: &Measured,
         events: &mut Vec<PairEvent>,
     ) -> bool {
+        let Measured { is_past, is_near, depth, size } = measured;
+        // Whether the extension of its facet holds a pair off another facet over which its node
+        // lies: at a ridge, and, unless the node is still inside the other one, well past the end.
+        let is_held_off = |pair: &Pair, to: usize, xi: [f64; 2]| {
+            let size = size(to);
+            let below = depth(pair.node, to, xi);
+            let below_own = depth(pair.node, pair.facet, [pair.xi, pair.eta]);
+            below_own > below + SAME * size || is_past(pair) && below <= AT_JOINT * size
+        };
         let Pairing { pairs, left, fresh, .. } = pairing;
         let starts = std::mem::replace(fresh, false);
-        let mut moves = Moves { held, left, events, concave: Vec::new(), changed: false };
+        let mut moves =
+            Moves { held, left, events, concave: Vec::new(), yielding: Vec::new(), changed: false };
         pairs.retain_mut(|pair| {
             let node = self.nodes[pair.node];
             // Moves on to neighbours until the closest point lies on the facet, at most as many
@@ -117,6 +144,13 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
             for _ in 0..=self.facets {
                 match (self.next)(pair, moves.left.get(&pair.node).copied()) {
                     Next::Stay => return true,
+                    Next::HandOver(to, xi)
+                        if pair.active && moves.held.contains(pair.node, to) && is_held_off(pair, to, xi) =>
+                    {
+                        moves.yielding.push((*pair, to));
+                        moves.drop_pair(pair, PairEvent::HandOver { node, from: pair.facet, to });
+                        return false;
+                    }
                     Next::HandOver(to, _) | Next::Concave(to, _) if moves.held.contains(pair.node, to) => {
                         // In the joint the node has both pairs. Beyond the reach of this facet that
                         // of the other one is responsible: an extrapolated facet is not the
@@ -129,7 +163,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                     }
                     Next::Concave(facet, xi) => {
                         // A node that its pair has set free may have sunk into the other facet.
-                        moves.changed |= pair.active || enters(pair.node, facet, xi);
+                        moves.changed |= pair.active || depth(pair.node, facet, xi) > 0.0;
                         moves.held.take(pair.node, facet);
                         moves.concave.push(Pair::opened(pair.node, OnFacet { facet, xi }));
                         return true;
@@ -140,7 +174,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                         }
                         // At a concave joint an inactive pair may be in front of one facet and
                         // behind the other.
-                        moves.changed |= pair.active || enters(pair.node, to, xi);
+                        moves.changed |= pair.active || depth(pair.node, to, xi) > 0.0;
                         moves.hand_over(pair, to, xi);
                     }
                     Next::Leave if pair.active && !starts => return true,
@@ -152,7 +186,14 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
             }
             true
         });
-        let Moves { mut concave, changed, .. } = moves;
+        let Moves { mut concave, yielding, changed, .. } = moves;
+        for (old, to) in yielding {
+            let is_other = |pair: &&mut Pair| (pair.node, pair.facet) == (old.node, to) && !pair.active;
+            let other = pairs.iter_mut().find(is_other);
+            if let Some(pair) = other {
+                *pair = Pair { facet: to, xi: pair.xi, eta: pair.eta, joint: pair.joint, ..old };
+            }
+        }
         if !concave.is_empty() {
             pairs.append(&mut concave);
             in_order(pairs);
@@ -180,13 +221,14 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
             let mut previous = None;
             for _ in 0..self.facets {
                 let Next::HandOver(facet, xi) = (self.next)(pair, previous) else { break };
-                previous = Some(pair.facet);
+                previous = Some(Left { facet: pair.facet, returned: true });
                 pair.facet = facet;
                 pair.joint = None;
                 [pair.xi, pair.eta] = xi;
             }
             if pair.facet != from {
-                left.extend(previous.map(|facet| (pair.node, facet)));
+                let returned = left.get(&pair.node).is_some_and(|left| left.returned);
+                left.extend(previous.map(|from| (pair.node, Left { returned, ..from })));
                 events.push(PairEvent::HandOver { node: self.nodes[pair.node], from, to: pair.facet });
                 changed = true;
             }

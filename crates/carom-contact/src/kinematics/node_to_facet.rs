@@ -17,7 +17,7 @@ use carom_solid::FacetShape;
 use super::facets::{Facets, OnFacet};
 use super::facing::{NEAR_END, PAST_SIDE, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
-use super::hand_over::{Held, Next, Sliding};
+use super::hand_over::{Held, Measured, Next, Sliding};
 use super::joint::OnFacets;
 use super::opposed::is_left;
 use super::passed::{Boxes, Passed, Paths};
@@ -28,7 +28,7 @@ use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
 use super::{Kinematics, watch_every_node, zero};
-use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
+use crate::pair::{ContactError, Left, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
@@ -226,7 +226,7 @@ impl NodeToFacet {
     fn slide(&self, before: Places, now: Places, pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         // A frozen contact point belongs to the positions at the start of the step.
         let placed = if self.is_frozen() { before } else { now };
-        let next = |pair: &Pair, came_from: Option<usize>| {
+        let next = |pair: &Pair, came_from: Option<Left>| {
             let node = self.secondary[pair.node];
             let is_corners = || self.is_left_to_corner(node, pair.facet, pair.xi, before);
             if self.ends_at(node, pair.facet, pair.xi) || is_corners() {
@@ -246,13 +246,16 @@ impl NodeToFacet {
                 next => next,
             }
         };
-        let enters = |place: usize, facet: usize, [xi, _]: [f64; 2]| {
-            self.gap(self.secondary[place], facet, xi, now) + self.slack(place) < 0.0
+        let depth = |place: usize, facet: usize, [xi, _]: [f64; 2]| {
+            -self.gap(self.secondary[place], facet, xi, now) - self.slack(place)
         };
         let held = Held::several(&pairing.pairs);
+        let is_past = |pair: &Pair| pair.xi.abs() > HAND_OVER;
         let is_near = |pair: &Pair| pair.xi.abs() <= REACH;
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
-        sliding.search(pairing, held, is_near, enters, events)
+        let size = |facet: usize| self.primary.length(facet, now);
+        let measured = Measured { is_past: &is_past, is_near: &is_near, depth: &depth, size: &size };
+        sliding.search(pairing, held, &measured, events)
     }
 
     /// Adds a pair for every node that may have reached a facet, and for nodes with pairs that
@@ -445,7 +448,7 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let now = self.places(now);
-        let next = |pair: &Pair, previous: Option<usize>| {
+        let next = |pair: &Pair, previous: Option<Left>| {
             let node = self.secondary[pair.node];
             match self.primary.next_facet(pair, now.at(node), previous, now) {
                 Next::HandOver(facet, _)

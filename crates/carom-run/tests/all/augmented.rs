@@ -274,3 +274,63 @@ fn corners_beside_nodes_do_not_rub_against_each_other() {
         }
     }
 }
+
+/// A block is pressed on another one and dragged: its nodes slide over joints of curved facets, and
+/// where the springs of the first rounds have let them sink they come back to the facet over which
+/// they lie. The result is that of multipliers.
+#[test]
+fn nodes_that_slide_over_joints_have_the_forces_of_multipliers() {
+    let text = r#"
+dimension = 3
+[[material]]
+name = "soft"
+law = "neo-hookean"
+density = 1.0
+young = 1.0
+poisson = 0.3
+[[material]]
+name = "stiff"
+law = "neo-hookean"
+density = 1.0
+young = 3.0
+poisson = 0.3
+[[body]]
+name = "upper"
+material = "stiff"
+element = "Hex27"
+mesh = { shape = "extrusion", of = { shape = "rectangle", min = [-0.4, 0.0], max = [0.0, 0.3], cells = [4, 2] }, height = 0.2, layers = 1 }
+[[body]]
+name = "lower"
+material = "soft"
+element = "Hex27"
+mesh = { shape = "extrusion", of = { shape = "rectangle", min = [-0.8, -0.4], max = [0.8, 0.0], cells = [8, 3] }, height = 0.2, layers = 1 }
+[[support]]
+on = ["upper.base", "upper.lid", "lower.base", "lower.lid"]
+fix = ["z"]
+[[support]]
+on = ["lower.bottom"]
+fix = ["x", "y"]
+[[support]]
+on = ["upper.top"]
+move = { y = "-0.06*min(t, 1)", x = "0.3*max(0, t - 1)" }
+[[contact]]
+name = "c"
+secondary = "upper.bottom"
+primary = "lower.top"
+enforcement = "multiplier"
+[time]
+end = 1.5
+step = 0.05
+scheme = { kind = "static" }
+"#;
+    let mut runs = ["multiplier", "augmented"]
+        .map(|enforcement| simulation(text, &[format!("contact.c.enforcement={enforcement}")]));
+    while !runs[0].finished() {
+        runs.iter_mut().for_each(|run| run.advance(&mut GridReport::default()).unwrap());
+        let [exact, found] = runs.each_ref().map(|run| run.state().contact_forces[0]);
+        for i in 0..3 {
+            let difference = (exact[i] - found[i]).abs();
+            assert!(difference <= 1e-8 * exact[1].abs(), "{exact:?} {found:?}");
+        }
+    }
+}

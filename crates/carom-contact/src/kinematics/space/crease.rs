@@ -5,19 +5,30 @@ use super::node_to_patch::{NodeToPatch, REACH};
 use super::patch::place;
 use super::paths::NOISE;
 use crate::kinematics::{Facets, OnFacet};
+use crate::pair::Pair;
 
 impl NodeToPatch {
     /// The facet of which a node below a crease is deepest, of those that face its own facet, if
     /// the nearest point of the primary is on an edge. On the extrapolation of its own facet the
-    /// node would sink into the others.
-    pub(super) fn in_crease(&self, node: usize, own: usize, y: &[f64]) -> Option<OnFacet<[f64; 2]>> {
+    /// node would sink into the others. Across an edge of its own facet, it lies past that edge.
+    pub(super) fn in_crease(&self, pair: &Pair, y: &[f64]) -> Option<OnFacet<[f64; 2]>> {
+        let own = pair.facet;
+        let node = self.secondary[pair.node];
+        let beyond = self.primary.patch(own).beyond([pair.xi, pair.eta]);
+        let corners = self.primary.shape().corners();
+        let is_past = |facet: usize| {
+            let edge = (0..corners).find(|&edge| self.primary.across(own, edge) == Some(facet));
+            edge.is_none_or(|edge| beyond[edge] > 0.0)
+        };
         let from = place(y, node);
         if self.primary.depth(own, from, y).distance >= 0.0 {
             return None;
         }
         let mut least = -NOISE * self.primary.patch(own).length(y);
         let mut deepest = None;
-        let is_met = |&facet: &usize| self.primary.is_of_side(facet) && self.may_take(node, facet, y);
+        let is_met = |&facet: &usize| {
+            self.primary.is_of_side(facet) && is_past(facet) && self.may_take(node, facet, y)
+        };
         for facet in self.primary.ring(own).iter().copied().filter(is_met) {
             let patch = self.primary.patch(facet);
             let Some(xi) = patch.closest_point(y, from, REACH) else { continue };

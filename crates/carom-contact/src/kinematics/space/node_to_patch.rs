@@ -25,14 +25,14 @@ use super::folds::PatchFolds;
 use super::patch::{Feature, PatchPoint, place};
 use super::paths::{Around, NOISE, Paths};
 use crate::kinematics::apart::Apart;
-use crate::kinematics::hand_over::{Held, Next, Sliding};
+use crate::kinematics::hand_over::{Held, Measured, Next, Sliding};
 use crate::kinematics::joint::OnFacets;
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
 use crate::kinematics::reversed::{Corners, Faced};
 use crate::kinematics::rounding::rounding;
 use crate::kinematics::{Facets, Kinematics, OnFacet, Passed, Side, SweptPatch};
-use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
+use crate::pair::{ContactError, Left, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
 /// Distance past an edge, relative to the height of the facet, up to which a facet is extrapolated.
@@ -250,7 +250,7 @@ impl NodeToPatch {
     }
 
     /// Facet to which a pair whose closest point lies past an edge of its facet is handed over.
-    fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
+    fn next_facet(&self, pair: &Pair, came_from: Option<Left>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
         // A pair with all facets of a joint slides on any of them.
@@ -288,9 +288,14 @@ impl NodeToPatch {
             {
                 if self.faces_nothing(pair.facet, xi, y) { Next::Leave } else { Next::Stay }
             }
-            Some((facet, _, xi_there)) if came_from == Some(facet) => {
-                let gaps = [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
-                if (gaps[0] - gaps[1]).abs() <= FLAT * patch.length(y) {
+            Some((facet, _, xi_there)) if came_from.is_some_and(|left| left.facet == facet) => {
+                let [own, other] =
+                    [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
+                let round_off = FLAT * patch.length(y);
+                if came_from.is_some_and(|left| !left.returned) && other >= -round_off {
+                    // An early iterate had led the node away.
+                    Next::HandOver(facet, xi_there)
+                } else if (own - other).abs() <= round_off {
                     Next::Stay
                 } else {
                     Next::Concave(facet, xi_there)
@@ -298,7 +303,7 @@ impl NodeToPatch {
             }
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
-                if let Some(OnFacet { facet, xi }) = self.in_crease(node, pair.facet, y) {
+                if let Some(OnFacet { facet, xi }) = self.in_crease(pair, y) {
                     return Next::Concave(facet, xi);
                 }
                 let bridged = patch.furthest(xi) <= REACH && !self.faces_nothing(pair.facet, xi, y);
@@ -310,9 +315,8 @@ impl NodeToPatch {
     /// Hands over, adds or drops pairs past the edges of their facets. Returns whether anything but
     /// an inactive pair changed.
     fn slide(&self, [before, now]: [&[f64]; 2], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
-        let enters = |place_of: usize, facet: usize, xi: [f64; 2]| {
-            let node = self.secondary[place_of];
-            self.gap(facet, xi, place(now, node), now) + self.slack(place_of) < 0.0
+        let depth = |place_of: usize, facet: usize, xi: [f64; 2]| {
+            -self.gap(facet, xi, place(now, self.secondary[place_of]), now) - self.slack(place_of)
         };
         let next = |pair: &Pair, came_from| {
             let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
@@ -323,8 +327,11 @@ impl NodeToPatch {
         };
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
         let held = Held::all(&pairing.pairs);
+        let is_past = |pair: &Pair| self.beyond(pair) > HAND_OVER;
         let is_near = |pair: &Pair| self.beyond(pair) <= REACH;
-        sliding.search(pairing, held, is_near, enters, events)
+        let size = |facet: usize| self.primary.patch(facet).length(now);
+        let measured = Measured { is_past: &is_past, is_near: &is_near, depth: &depth, size: &size };
+        sliding.search(pairing, held, &measured, events)
     }
 
     /// Adds a pair for every node that may have reached a facet, and for nodes with pairs that
