@@ -54,8 +54,9 @@ pub struct Draft {
     /// A load: traction or pressure on sides, or body force in a body.
     #[key(Tables(&LoadKeys::TABLE), optional = "", with = spec::loads)]
     pub(crate) load: Vec<Option<LoadSpec>>,
-    /// Start from the final state of another run instead of the reference positions. Time starts at
-    /// 0 again, also in the formulas of loads and motions.
+    /// Start from the final state of another run instead of the reference positions. After a
+    /// finished run time starts at 0 again, also in the formulas of loads and motions; a saved
+    /// state continues at its time.
     #[key(optional = "")]
     pub(crate) initial: Option<InitialSpec>,
     /// A manufactured solution: load, boundary motion and initial state are derived from it, and

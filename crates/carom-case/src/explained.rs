@@ -95,16 +95,14 @@ pub fn similar_key(path: &str, more: &[&'static Table], words: &[&str]) -> Strin
     let all = every_key(more);
     let keys = || all.iter().map(|key| key.key.as_str());
     let beside = path.rsplit_once('.').and_then(|(table, name)| {
-        let of_table = |key: &'_ &str| key.rsplit_once('.').is_some_and(|(other, _)| other == table);
+        let of_table = |key: &&str| key.rsplit_once('.').is_some_and(|(other, _)| other == table);
         let near = suggest::nearest(name, keys().filter(of_table).map(last_name))?;
         Some(format!("{table}.{near}"))
     });
-    if let Some(key) = beside {
-        return format!("did you mean `{key}`?");
-    }
     let names = keys().map(last_name).filter(|_| !path.contains('.'));
     let near = suggest::nearest(path, keys().chain(words.iter().copied()));
-    near.or_else(|| suggest::nearest(path, names)).map_or_else(
+    let near = near.or_else(|| suggest::nearest(path, names)).map(str::to_owned);
+    beside.or(near).map_or_else(
         || "`carom explain` lists the schemes, and `carom schema` all keys".to_owned(),
         |name| format!("did you mean `{name}`?"),
     )

@@ -82,14 +82,6 @@ pub(crate) fn in_order(pairs: &mut [Pair]) {
     pairs.sort_by_key(|pair| pair.node);
 }
 
-/// The facet that a node has left in a solve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Left {
-    pub(crate) facet: usize,
-    /// Whether the node has returned to a facet that it had left.
-    pub(crate) returned: bool,
-}
-
 /// The pairs of one contact during one solve, ascending by node.
 #[derive(Debug, Educe, PartialEq)]
 #[educe(Clone)]
@@ -99,8 +91,8 @@ pub struct Pairing {
     /// Margin around facets within which nodes are tracked.
     pub(crate) margin: f64,
     /// Facet from which each node was handed over in this step: a node that would return to it lies
-    /// in a concave corner, unless an early iterate had led it away.
-    pub(crate) left: BTreeMap<usize, Left>,
+    /// in a concave corner.
+    pub(crate) left: BTreeMap<usize, usize>,
     /// Whether no search has been made yet in this solve.
     pub fresh: bool,
 }
@@ -129,7 +121,7 @@ impl Pairing {
     pub(crate) fn split_off(&mut self, node: usize) -> Self {
         let mut pairs = self.pairs.split_off(self.pairs.partition_point(|pair| pair.node < node));
         pairs.iter_mut().for_each(|pair| pair.node -= node);
-        let left = self.left.split_off(&node).into_iter().map(|(k, left)| (k - node, left)).collect();
+        let left = self.left.split_off(&node).into_iter().map(|(k, facet)| (k - node, facet)).collect();
         Self { pairs, margin: self.margin, left, fresh: self.fresh }
     }
 
@@ -137,7 +129,7 @@ impl Pairing {
     /// [`split_off`](Self::split_off).
     pub(crate) fn append(&mut self, other: Self, node: usize) {
         self.pairs.extend(other.pairs.into_iter().map(|pair| Pair { node: pair.node + node, ..pair }));
-        self.left.extend(other.left.into_iter().map(|(k, left)| (k + node, left)));
+        self.left.extend(other.left.into_iter().map(|(k, facet)| (k + node, facet)));
     }
 }
 

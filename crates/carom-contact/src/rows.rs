@@ -6,6 +6,9 @@
 
 use carom_algebra::Vector;
 
+/// Area between two tangents, over the sum of their squares, up to which they are parallel.
+const PARALLEL: f64 = 1e-6;
+
 /// Constraint rows: gaps with their gradients, all over positions of one dimension.
 #[derive(Clone, Debug)]
 pub struct Rows {
@@ -209,19 +212,23 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
-    /// The tangents of a slip in space, whose rows begin with `first`: those nearest to their
-    /// gradients for the first node, which over a joint are means of tangents to several facets,
-    /// shorter across it. The nearest ones do not turn, however often they are carried there and
-    /// back. Zero in the plane, where the normal gives the tangent.
+    /// The unit tangents of a slip in space, whose rows begin with `first`: the orthonormal pair
+    /// nearest to the rows' gradients for the first node. Over a joint these are means over several
+    /// facets and shorter across it; the nearest pair does not turn, however often it is carried
+    /// there and back. The gradients themselves where they are parallel; zero in the plane, where
+    /// the normal gives the tangent.
     pub fn tangents(&self, first: usize) -> [[f64; 3]; 2] {
-        if self.dimension == 2 {
+        if self.dimension != 3 {
             return [[0.0; 3]; 2];
         }
         let [along, across] = [first, first + 1].map(|row| Vector(self.row(row).first()));
         // The orthogonal factor of a polar decomposition, by the root of the Gram matrix.
         let mixed = along.dot(&across);
         let squares = [along.dot(&along), across.dot(&across)];
-        let area = (squares[0] * squares[1] - mixed * mixed).sqrt();
+        let area = (squares[0] * squares[1] - mixed * mixed).max(0.0).sqrt();
+        if area <= PARALLEL * (squares[0] + squares[1]) {
+            return [along.0, across.0];
+        }
         let scale = area * (squares[0] + squares[1] + 2.0 * area).sqrt();
         let unit = |own: Vector<3>, of_other: f64, other: Vector<3>| {
             (own * (of_other + area) - other * mixed) * scale.recip()

@@ -161,7 +161,7 @@ fn force(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let caption = format!(
         "Contact force on the secondary sides at the ends of the steps{}{}.{}{} Data: `history.csv`, columns \
          `contact_force_…`{}{}.",
-        said_if(has_several, ", in all and by contact"),
+        said_if(has_several, ", their sum, which need not act on one body, and by contact"),
         said_if(has_impulse, ", and its impulse"),
         histories.shaded(),
         histories.sources(&shown),

@@ -4,6 +4,7 @@
 //! The meshes are rebuilt from the resolved case of that run and compared node by node: names alone
 //! would not detect a changed mesh.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use carom_case::{Case, InitialSpec, Problem, Velocities};
@@ -154,7 +155,8 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
     carry(model, &mut before, &directory.to_string())?;
     let free =
         Continued { case, model, old: &old, state: &state, first }.go_on(spec.velocities, &mut before)?;
-    let depths = || depths_of(&old, &state);
+    let known = OnceCell::new();
+    let depths = || &**known.get_or_init(|| depths_of(&old, &state));
     let Found { pairs, slid, left } =
         initial_pairs::found(case, model, &before.y, &old, &state, &free, depths);
     if let Some(problem) = initial_pairs::overlap(case, model, &before.y, &left) {

@@ -36,14 +36,14 @@ pub(crate) struct Found {
 /// The pairs of a model at positions `y`, from the other run and its last state.
 /// `free`: contacts whose obstacle is free and goes on where it was; `depths`: how deep the bodies
 /// of each contact of that run are at its end.
-pub(crate) fn found(
+pub(crate) fn found<'a>(
     case: &Case,
     model: &Model,
     y: &[f64],
     old: &Case,
     state: &State,
     free: &[usize],
-    depths: impl Fn() -> Vec<f64>,
+    depths: impl Fn() -> &'a [f64],
 ) -> Found {
     let mut found = Found { pairs: Vec::new(), slid: BTreeMap::new(), left: Vec::new() };
     let before = counterparts(case, model, y, old, state);
@@ -67,7 +67,7 @@ pub(crate) fn found(
         found.left.push(match (is_there, goes_on) {
             (true, true) => f64::INFINITY,
             (true, false) => left_by_another(spec) * length,
-            // An obstacle that stands where that run left it is as deep as there.
+            // Where the obstacle stands as that run left it, the bodies are as deep as there.
             (false, true) if !spec.enforcement.is_exact() => {
                 let depth = depths().get(before).copied().unwrap_or(0.0);
                 f64::max(DEEP * length, (1.0 + DEEP) * depth)

@@ -244,13 +244,13 @@ fn no_start(case: &Case, placed: bool, obstacles: &[(Range<usize>, String)], rej
         let what = format!("the obstacle of contact \"{name}\" would jump at the start");
         let only_turns =
             matches!(&contact.motion, ObstacleMotion::Prescribed { moves, .. } if moves.is_empty());
-        let (key, why) = if only_turns {
-            ("primary.motion.rotate", "its angle is not zero at t = 0".to_owned())
-        } else {
-            ("primary.motion", case.in_units(&format!("its motion is {distance:.3e} [length] at t = 0")))
-        };
         let help = "subtract from each formula its value at t = 0, and place the obstacle where it begins";
-        return Problem::new(contact.path(key), what, why, help);
+        if only_turns {
+            let path = contact.path("primary.motion.rotate");
+            return Problem::new(path, what, "its angle is not zero at t = 0", help);
+        }
+        let why = case.in_units(&format!("its motion is {distance:.3e} [length] at t = 0"));
+        return Problem::new(contact.path("primary.motion"), what, why, help);
     }
     let (path, what, help) = match rejected {
         Rejected::NoValue(value) => {

@@ -3,9 +3,8 @@
 //! ```text
 //! joint, convex          a pair past the end is handed to the neighbour; past the ends of both, it keeps
 //!                        its facet, which is extrapolated up to |ξ| = 1.2
-//! concave corner         a node behind both facets, or that would be handed back within the step to a
-//!                        facet that it enters, or a second time, has a pair with either facet, g ≥ 0
-//!                        for both: it may lie in the joint
+//! concave corner         a node behind both facets, or that would be handed back within the step, has a
+//!                        pair with either facet, g ≥ 0 for both: it may lie in the joint
 //! plane of symmetry       a facet is extrapolated: its mirror image continues it
 //! corner, end of side    nothing is faced past the end, |ξ| > 1.001; a pair that slides past it keeps its
 //!                        facet to the end of the step and leaves at the start of the next one
@@ -16,7 +15,7 @@ use carom_algebra::Vector;
 use super::facets::Facets;
 use super::hand_over::Next;
 use super::surface::Surface;
-use crate::pair::{Left, Pair};
+use crate::pair::Pair;
 use crate::places::Places;
 
 /// |ξ| up to which a facet in the plane is extrapolated beyond its ends.
@@ -60,7 +59,7 @@ impl Surface {
         &self,
         pair: &Pair,
         from: Vector<2>,
-        came_from: Option<Left>,
+        came_from: Option<usize>,
         y: Places,
     ) -> Next {
         // A pair with both facets of a joint slides on either.
@@ -75,18 +74,14 @@ impl Surface {
         if self.is_corner(first, second, y) {
             return past_all();
         }
-        let there = self.facet(neighbour).closest_point(y, from, REACH);
-        let there = there.filter(|&xi| if forward { xi >= -1.0 } else { xi <= 1.0 });
-        if let Some(left) = came_from.filter(|left| left.facet == neighbour) {
-            // An early iterate may have led the node away from where it does not enter.
-            let enters = |xi: f64| self.gap(neighbour, xi, from, y) < -PAST * self.length(neighbour, y);
-            return match there {
-                Some(xi) if !left.returned && !enters(xi) => Next::HandOver(neighbour, [xi, 0.0]),
-                _ => Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]),
-            };
+        if came_from == Some(neighbour) {
+            return Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]);
         }
-        if let Some(xi) = there {
-            return Next::HandOver(neighbour, [xi, 0.0]);
+        if let Some(xi) = self.facet(neighbour).closest_point(y, from, REACH) {
+            let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
+            if inside {
+                return Next::HandOver(neighbour, [xi, 0.0]);
+            }
         }
         // Past both ends: behind both facets of a concave corner.
         if self.is_notch(first, second, y) {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use super::facets::OnFacet;
 use super::joint::AT_JOINT;
-use crate::pair::{Left, Pair, PairEvent, Pairing, in_order};
+use crate::friction::Tangential;
+use crate::pair::{Pair, PairEvent, Pairing, in_order};
 
 /// Difference of depths, over the size of a facet, that is round-off.
 const SAME: f64 = 1e-9;
@@ -60,12 +61,12 @@ impl Held {
 struct Moves<'a> {
     held: Held,
     /// Facet from which each node was handed over.
-    left: &'a mut BTreeMap<usize, Left>,
+    left: &'a mut BTreeMap<usize, usize>,
     events: &'a mut Vec<PairEvent>,
     /// Second pairs of nodes in concave corners.
     concave: Vec<Pair>,
-    /// Closed pairs that give way to the open pair of their node with another facet.
-    yielding: Vec<(Pair, usize)>,
+    /// Closed pairs that give way to the pair of their node with another facet, at a point of it.
+    yielding: Vec<(Pair, OnFacet<[f64; 2]>)>,
     /// Whether anything but an inactive pair has changed.
     changed: bool,
 }
@@ -73,8 +74,7 @@ struct Moves<'a> {
 impl Moves<'_> {
     /// Moves a pair to the point ξ of another facet.
     fn hand_over(&mut self, pair: &mut Pair, facet: usize, xi: [f64; 2]) {
-        let returned = self.left.get(&pair.node).is_some_and(|left| left.returned || left.facet == facet);
-        self.left.insert(pair.node, Left { facet: pair.facet, returned });
+        self.left.insert(pair.node, pair.facet);
         self.held.leave(pair);
         self.held.take(pair.node, facet);
         pair.facet = facet;
@@ -114,7 +114,7 @@ pub(super) struct Sliding<'a, N> {
     pub next: N,
 }
 
-impl<N: Fn(&Pair, Option<Left>) -> Next> Sliding<'_, N> {
+impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
     /// Hands over, adds or drops pairs between solves. Returns whether anything but an inactive
     /// pair changed.
     pub(super) fn search(
@@ -145,9 +145,12 @@ impl<N: Fn(&Pair, Option<Left>) -> Next> Sliding<'_, N> {
                 match (self.next)(pair, moves.left.get(&pair.node).copied()) {
                     Next::Stay => return true,
                     Next::HandOver(to, xi)
-                        if pair.active && moves.held.contains(pair.node, to) && is_held_off(pair, to, xi) =>
+                        if pair.active
+                            && !starts
+                            && moves.held.contains(pair.node, to)
+                            && is_held_off(pair, to, xi) =>
                     {
-                        moves.yielding.push((*pair, to));
+                        moves.yielding.push((*pair, OnFacet { facet: to, xi }));
                         moves.drop_pair(pair, PairEvent::HandOver { node, from: pair.facet, to });
                         return false;
                     }
@@ -165,7 +168,11 @@ impl<N: Fn(&Pair, Option<Left>) -> Next> Sliding<'_, N> {
                         // A node that its pair has set free may have sunk into the other facet.
                         moves.changed |= pair.active || depth(pair.node, facet, xi) > 0.0;
                         moves.held.take(pair.node, facet);
-                        moves.concave.push(Pair::opened(pair.node, OnFacet { facet, xi }));
+                        let second = Pair::opened(pair.node, OnFacet { facet, xi });
+                        // It goes on where the first one leaves.
+                        let Tangential { tangents, slip, .. } = pair.tangential;
+                        let tangential = Tangential { tangents, slip, ..second.tangential };
+                        moves.concave.push(Pair { tangential, ..second });
                         return true;
                     }
                     Next::HandOver(to, xi) => {
@@ -186,16 +193,18 @@ impl<N: Fn(&Pair, Option<Left>) -> Next> Sliding<'_, N> {
             }
             true
         });
-        let Moves { mut concave, yielding, changed, .. } = moves;
-        for (old, to) in yielding {
-            let is_other = |pair: &&mut Pair| (pair.node, pair.facet) == (old.node, to) && !pair.active;
-            let other = pairs.iter_mut().find(is_other);
-            if let Some(pair) = other {
-                *pair = Pair { facet: to, xi: pair.xi, eta: pair.eta, joint: pair.joint, ..old };
+        let Moves { concave: mut added, yielding, changed, .. } = moves;
+        for (old, OnFacet { facet, xi: [xi, eta] }) in yielding {
+            let other = pairs.iter_mut().find(|pair| (pair.node, pair.facet) == (old.node, facet));
+            let moved = Pair { facet, xi, eta, joint: None, ..old };
+            match other {
+                Some(pair) if pair.active => {}
+                Some(pair) => *pair = Pair { joint: pair.joint, ..moved },
+                None => added.push(moved),
             }
         }
-        if !concave.is_empty() {
-            pairs.append(&mut concave);
+        if !added.is_empty() {
+            pairs.append(&mut added);
             in_order(pairs);
         }
         changed
@@ -221,14 +230,13 @@ impl<N: Fn(&Pair, Option<Left>) -> Next> Sliding<'_, N> {
             let mut previous = None;
             for _ in 0..self.facets {
                 let Next::HandOver(facet, xi) = (self.next)(pair, previous) else { break };
-                previous = Some(Left { facet: pair.facet, returned: true });
+                previous = Some(pair.facet);
                 pair.facet = facet;
                 pair.joint = None;
                 [pair.xi, pair.eta] = xi;
             }
             if pair.facet != from {
-                let returned = left.get(&pair.node).is_some_and(|left| left.returned);
-                left.extend(previous.map(|from| (pair.node, Left { returned, ..from })));
+                left.extend(previous.map(|facet| (pair.node, facet)));
                 events.push(PairEvent::HandOver { node: self.nodes[pair.node], from, to: pair.facet });
                 changed = true;
             }

@@ -28,7 +28,7 @@ use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
 use super::{Kinematics, watch_every_node, zero};
-use crate::pair::{ContactError, Left, Pair, PairEvent, Pairing, in_order};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
 
@@ -226,7 +226,7 @@ impl NodeToFacet {
     fn slide(&self, before: Places, now: Places, pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         // A frozen contact point belongs to the positions at the start of the step.
         let placed = if self.is_frozen() { before } else { now };
-        let next = |pair: &Pair, came_from: Option<Left>| {
+        let next = |pair: &Pair, came_from: Option<usize>| {
             let node = self.secondary[pair.node];
             let is_corners = || self.is_left_to_corner(node, pair.facet, pair.xi, before);
             if self.ends_at(node, pair.facet, pair.xi) || is_corners() {
@@ -448,7 +448,7 @@ impl Kinematics for NodeToFacet {
             return false;
         }
         let now = self.places(now);
-        let next = |pair: &Pair, previous: Option<Left>| {
+        let next = |pair: &Pair, previous: Option<usize>| {
             let node = self.secondary[pair.node];
             match self.primary.next_facet(pair, now.at(node), previous, now) {
                 Next::HandOver(facet, _)

@@ -22,7 +22,7 @@ use super::reversed::NodesWithDepth;
 use super::tangents::tangents;
 use super::way::{SHARE, share};
 use super::{Kinematics, watch_every_node};
-use crate::pair::{ContactError, Left, Pair, PairEvent, Pairing};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
 /// Secondary nodes against a rigid obstacle.
@@ -184,7 +184,7 @@ impl NodeToObstacle {
         before: Point,
         local: &Local,
         now: &[f64],
-        left: &mut BTreeMap<usize, Left>,
+        left: &mut BTreeMap<usize, usize>,
         events: &mut Vec<PairEvent>,
     ) -> (Option<Pair>, bool) {
         let node = self.secondary[pair.node];
@@ -203,9 +203,9 @@ impl NodeToObstacle {
         }
         pair.facet = self.shape.followed(pair.facet, at);
         match self.shape.at_corner(pair.facet, at) {
-            AtCorner::Goes(next) if left.get(&pair.node).is_none_or(|left| left.facet != next) => {
+            AtCorner::Goes(next) if left.get(&pair.node) != Some(&next) => {
                 events.push(PairEvent::HandOver { node, from: pair.facet, to: next });
-                left.insert(pair.node, Left { facet: pair.facet, returned: false });
+                left.insert(pair.node, pair.facet);
                 pair.facet = next;
                 (Some(pair), true)
             }

@@ -175,7 +175,7 @@ fn tangents_do_not_turn_over_a_joint() {
     {
         assert!((product - expected).abs() < 1e-14, "{product}");
     }
-    // By half of a degree, had the means been normalised one after the other.
+    // Normalising the means one after the other would turn them by half a degree.
     assert!((along[1] / along[0] - 0.75).abs() < 2e-3, "{along:?}");
     (0..1000).for_each(|_| carry(&mut pair));
     let turned = (Vector(pair.tangential.tangents[0]) - along).norm();

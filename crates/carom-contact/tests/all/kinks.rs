@@ -68,6 +68,27 @@ fn a_node_that_goes_to_and_fro_in_a_dent_has_a_pair_with_either_facet() {
     assert!(rows.iter().all(|row| row.gap.abs() < 1e-15));
 }
 
+/// Of two pairs of a node on a ridge, the one that holds it on the extension of its facet, above
+/// the other facet over which the node lies, goes; its state goes on with the other one.
+#[test]
+fn the_extension_of_a_facet_holds_no_node_off_a_ridge() {
+    let ridge = [[1.0, 0.0], [0.0, 0.1], [-1.0, 0.0]];
+    let sides = Surface::new(FacetShape::L2, &[vec![0, 1], vec![1, 2]], &[1.0; 2]);
+    let contact = NodeToFacet::new(vec![3], sides, Detection::ClosestPoint);
+    // On the line through the first facet.
+    let y = [&ridge[..], &[[-0.01, 0.101]]].concat().into_flattened();
+    let mut closed = Pair { active: true, lambda: -2.0, ..Pair::open(0, 0, 0.0) };
+    closed.tangential.slip[0] = 0.3;
+    let mut pairing = Pairing::new(vec![closed, Pair::open(0, 1, 0.0)]);
+    pairing.fresh = false;
+    let mut rows = Rows::new(2);
+    pairing.pairs.iter_mut().for_each(|pair| contact.measure(pair, &y, &mut rows).unwrap());
+    assert!(rows.row(0).gap.abs() < 1e-15 && rows.row(1).gap > 1e-3);
+    assert!(contact.search(&y, &y, &mut pairing, &mut Vec::new()));
+    let [pair] = pairing.pairs[..] else { panic!("{:?}", pairing.pairs) };
+    assert_eq!((pair.facet, pair.active, pair.lambda, pair.tangential.slip[0]), (1, true, -2.0, 0.3));
+}
+
 #[test]
 fn a_node_behind_both_facets_of_a_notch_has_a_pair_with_either() {
     let notch = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];

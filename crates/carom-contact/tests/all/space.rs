@@ -249,6 +249,30 @@ fn projected(target: [f64; 3], planes: &[Vector<3>]) -> Vector<3> {
     all.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap()
 }
 
+/// Two facets meet in a valley, and end in a plane. A node that has sunk beside the valley, with
+/// its foot past the end by round-off, is not below the crease; one that has sunk below it is.
+#[test]
+fn a_crease_is_where_a_foot_is_past_it() {
+    let nodes = [
+        [-1.0, 0.0, 0.2],
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.2],
+        [-1.0, 1.0, 0.2],
+        [0.0, 1.0, 0.0],
+        [1.0, 1.0, 0.2],
+    ];
+    let facets = [vec![1, 2, 5, 4], vec![2, 3, 6, 5]];
+    let contact = NodeToPatch::new(vec![0], Boundary::new(FacetShape::Q4, &facets, &[], 0));
+    for (x, expected) in [(0.1, 1), (0.001, 2)] {
+        let y = [&[[x, -1e-6, -0.1]], &nodes[..]].concat().into_flattened();
+        let mut pairing = Pairing::new(vec![Pair { active: true, ..Pair::open(0, 1, 0.0) }]);
+        pairing.fresh = false;
+        contact.measure(&mut pairing.pairs[0], &y, &mut Rows::new(3)).unwrap();
+        contact.search(&y, &y, &mut pairing, &mut Vec::new());
+        assert_eq!(pairing.pairs.len(), expected, "{x}: {:?}", pairing.pairs);
+    }
+}
+
 /// Facets of z = |x| + |y|, pulled at from below: what holds the node there must hold it outside of
 /// all four, wherever they meet.
 #[test]

@@ -1,7 +1,7 @@
 //! Creases of the primary: concave edges, and the points where several of them meet. The nearest
 //! point of a node below one is on an edge, and its own facet is not the only one that it enters.
 
-use super::node_to_patch::{NodeToPatch, REACH};
+use super::node_to_patch::{NodeToPatch, PAST, REACH};
 use super::patch::place;
 use super::paths::NOISE;
 use crate::kinematics::{Facets, OnFacet};
@@ -10,15 +10,16 @@ use crate::pair::Pair;
 impl NodeToPatch {
     /// The facet of which a node below a crease is deepest, of those that face its own facet, if
     /// the nearest point of the primary is on an edge. On the extrapolation of its own facet the
-    /// node would sink into the others. Across an edge of its own facet, it lies past that edge.
+    /// node would sink into the others. A facet across an edge of its own one counts
+    /// only if the node's foot is past that edge.
     pub(super) fn in_crease(&self, pair: &Pair, y: &[f64]) -> Option<OnFacet<[f64; 2]>> {
         let own = pair.facet;
         let node = self.secondary[pair.node];
-        let beyond = self.primary.patch(own).beyond([pair.xi, pair.eta]);
-        let corners = self.primary.shape().corners();
+        let patch = self.primary.patch(own);
+        let beyond = patch.beyond([pair.xi, pair.eta]);
         let is_past = |facet: usize| {
-            let edge = (0..corners).find(|&edge| self.primary.across(own, edge) == Some(facet));
-            edge.is_none_or(|edge| beyond[edge] > 0.0)
+            let edge = (0..patch.corners()).find(|&edge| self.primary.across(own, edge) == Some(facet));
+            edge.is_none_or(|edge| beyond[edge] > PAST)
         };
         let from = place(y, node);
         if self.primary.depth(own, from, y).distance >= 0.0 {

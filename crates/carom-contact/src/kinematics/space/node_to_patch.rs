@@ -32,7 +32,7 @@ use crate::kinematics::recent::Recent;
 use crate::kinematics::reversed::{Corners, Faced};
 use crate::kinematics::rounding::rounding;
 use crate::kinematics::{Facets, Kinematics, OnFacet, Passed, Side, SweptPatch};
-use crate::pair::{ContactError, Left, Pair, PairEvent, Pairing, in_order};
+use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
 /// Distance past an edge, relative to the height of the facet, up to which a facet is extrapolated.
@@ -54,7 +54,7 @@ const PAST_SIDE: f64 = 2e-2;
 /// of the other side meet: just where the node begins to face the side.
 pub(super) const NEAR_END: f64 = 0.5 * PAST_SIDE;
 /// Difference between the gaps of two facets, relative to their length, up to which either keeps a
-/// node out that would be handed to and fro between them: two rows would depend on each other.
+/// node out that would be handed to and fro near their joint: two rows would depend on each other.
 const FLAT: f64 = 1e-9;
 
 /// Secondary nodes against a primary side of facets in space.
@@ -250,7 +250,7 @@ impl NodeToPatch {
     }
 
     /// Facet to which a pair whose closest point lies past an edge of its facet is handed over.
-    fn next_facet(&self, pair: &Pair, came_from: Option<Left>, y: &[f64]) -> Next {
+    fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
         // A pair with all facets of a joint slides on any of them.
@@ -288,14 +288,10 @@ impl NodeToPatch {
             {
                 if self.faces_nothing(pair.facet, xi, y) { Next::Leave } else { Next::Stay }
             }
-            Some((facet, _, xi_there)) if came_from.is_some_and(|left| left.facet == facet) => {
-                let [own, other] =
-                    [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
-                let round_off = FLAT * patch.length(y);
-                if came_from.is_some_and(|left| !left.returned) && other >= -round_off {
-                    // An early iterate had led the node away.
-                    Next::HandOver(facet, xi_there)
-                } else if (own - other).abs() <= round_off {
+            Some((facet, _, xi_there)) if came_from == Some(facet) => {
+                let gaps = [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
+                let is_flat = (gaps[0] - gaps[1]).abs() <= FLAT * patch.length(y);
+                if is_flat && patch.furthest(xi) <= HAND_OVER {
                     Next::Stay
                 } else {
                     Next::Concave(facet, xi_there)
