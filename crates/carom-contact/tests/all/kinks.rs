@@ -53,6 +53,7 @@ fn a_node_that_goes_to_and_fro_in_a_dent_has_a_pair_with_either_facet() {
     let mut pairing = Pairing::default();
     let mut changed = false;
     for node in [[0.05, -0.02], [-0.05, -0.02], [0.05, -0.02]] {
+        pairing.pairs.iter_mut().for_each(|pair| pair.tangential.slip[0] = 0.2);
         // Each pair follows its closest point before the search, as in an iteration.
         let mut rows = Rows::new(2);
         pairing.pairs.iter_mut().for_each(|pair| contact.measure(pair, &at(node), &mut rows).unwrap());
@@ -62,6 +63,7 @@ fn a_node_that_goes_to_and_fro_in_a_dent_has_a_pair_with_either_facet() {
     assert!(changed);
     let facets: Vec<usize> = pairing.pairs.iter().map(|pair| pair.facet).collect();
     assert!(facets == [0, 1] || facets == [1, 0], "{facets:?}");
+    assert!(pairing.pairs.iter().all(|pair| pair.tangential.slip[0] == 0.2), "slip goes on");
     // At the bottom both gaps are closed.
     let mut rows = Rows::new(2);
     pairing.pairs.iter_mut().for_each(|pair| contact.measure(pair, &at([0.0; 2]), &mut rows).unwrap());

@@ -53,6 +53,13 @@ fn check_and_run_refuse_the_same() {
             ],
             "the obstacle of contact \"joint\" would jump at the start",
         ),
+        (
+            "blocks",
+            &[
+                "contact.joint.primary={ plane = { point = [0, 0], normal = [0, 1] }, motion = { rotate = \"t + 5\", about = [0, 0] } }",
+            ],
+            "its angle is not zero at t = 0",
+        ),
         ("blocks", &["support.ram.move.y=\"1/t\""], "has no value at t = 0"),
         ("blocks", &["body.high.place.shift=[0.0, -0.1]"], "overlap at the start by 0.1 m"),
         // All nodes of both sides are held: the overlap cannot be closed.
