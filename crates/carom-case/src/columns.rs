@@ -144,7 +144,7 @@ impl<'a> Recorded<'a> {
         if self.contacts.iter().any(|contact| contact.friction.exists()) {
             columns.count("sticking", "pairs in contact that stick");
             columns.add("stick_time", &label.time, "stick time, summed over pairs, cumulative");
-            columns.add("rub_time", &label.time, "the same of all closed pairs with friction");
+            columns.add("rub_time", &label.time, "time in contact, summed over pairs with friction");
             columns.add("slip", &label.length, "largest slip of a pair since it closed, so far");
         }
         let moving = || self.contacts.iter().filter(|contact| !contact.motion.is_fixed());

@@ -147,6 +147,8 @@ fn force(run: &Recorded, histories: &Histories) -> Option<Figure> {
     let impulses = Line::vector(run, "contact_impulse", "P");
     let most = impulses.iter().filter_map(|line| run.column(&line.column)).flatten();
     let least = 1e-9 * largest(most).max(f64::MIN_POSITIVE);
+    // In load steps a sum over the load parameter has no meaning.
+    let impulses = if run.is_static() { Vec::new() } else { impulses };
     let of_impulse = histories.vector("impulse", LOW, impulses, least);
     let has_impulse = is_drawn(&of_impulse);
     panels.extend(of_impulse);

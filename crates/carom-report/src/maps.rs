@@ -258,7 +258,8 @@ impl Maps<'_> {
             }
             spans.push([top, bottom]);
         }
-        let label = x_axis.label("time t", self.run.time_unit());
+        let name = if self.run.is_static() { "load parameter t" } else { "time t" };
+        let label = x_axis.label(name, self.run.time_unit());
         let y = head + count * STEP + 22.0;
         write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
         out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans, ""));
