@@ -169,7 +169,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                         moves.changed |= pair.active || depth(pair.node, facet, xi) > 0.0;
                         moves.held.take(pair.node, facet);
                         let second = Pair::opened(pair.node, OnFacet { facet, xi });
-                        // It goes on where the first one leaves.
+                        // The slip of the node goes on with it where the first one leaves.
                         let Tangential { tangents, slip, .. } = pair.tangential;
                         let tangential = Tangential { tangents, slip, ..second.tangential };
                         moves.concave.push(Pair { tangential, ..second });

@@ -70,7 +70,7 @@ fn a_node_that_goes_to_and_fro_in_a_dent_has_a_pair_with_either_facet() {
     assert!(rows.iter().all(|row| row.gap.abs() < 1e-15));
 }
 
-/// Of two pairs of a node on a ridge, the one that holds it on the extension of its facet, above
+/// A node on a ridge has two pairs: the one that holds it on the extension of its facet, above
 /// the other facet over which the node lies, goes; its state goes on with the other one.
 #[test]
 fn the_extension_of_a_facet_holds_no_node_off_a_ridge() {
