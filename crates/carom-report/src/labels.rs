@@ -45,13 +45,14 @@ pub(crate) fn with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() || unit == "1" { label.to_string() } else { format!("{label} ({unit})") }
 }
 
-/// The label of the axis of time, which in a static analysis is a parameter of the load.
+/// The name of the axis of time, which in a static analysis is a parameter of the load.
+pub(crate) fn time_name(run: &Recorded) -> &'static str {
+    if run.is_static() { "load parameter t" } else { "time t" }
+}
+
+/// The label of the axis of time.
 pub(crate) fn time_label(run: &Recorded) -> String {
-    if run.is_static() {
-        "load parameter t".to_owned()
-    } else {
-        with_unit("time t", run.history.unit("time"))
-    }
+    with_unit(time_name(run), run.time_unit())
 }
 
 /// `t = 0.315 s`, `t = 1.8 µs`, with the digits that tell the rows of a run apart.

@@ -11,6 +11,7 @@ use crate::axis::{Axis, range};
 use crate::bands::{Bands, positive_bands};
 use crate::chart::{ground, opened, tick_label, time_axis, turned, write_text};
 use crate::figure::{Figure, NARROW};
+use crate::labels::time_name;
 use crate::noise::floor;
 use crate::ordered::grouped;
 use crate::palette::LINES;
@@ -258,8 +259,7 @@ impl Maps<'_> {
             }
             spans.push([top, bottom]);
         }
-        let name = if self.run.is_static() { "load parameter t" } else { "time t" };
-        let label = x_axis.label(name, self.run.time_unit());
+        let label = x_axis.label(time_name(self.run), self.run.time_unit());
         let y = head + count * STEP + 22.0;
         write_text(&mut out, LEFT + 0.5 * plot, y, "text-anchor=\"middle\"", &label);
         out.push_str(&time_axis((LEFT, LEFT + plot), &x_axis, &spans, ""));
