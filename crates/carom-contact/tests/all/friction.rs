@@ -67,7 +67,7 @@ fn the_radius_has_its_derivatives_and_its_limits() {
     assert_eq!(law.grip(2.0), 1.2);
     assert_eq!((law.grip(5.0), law.grip(-1.0)), (1.5, 0.0));
     let h = 1e-6;
-    for (pressure, rate) in [(2.0, 0.0), (2.0, 0.4), (5.0, 2.0), (9.0, 0.1)] {
+    for (pressure, rate) in [(2.0, 0.0), (2.0, 0.4), (5.0, 2.0), (9.0, 0.1), (0.0, 0.1), (-2.0, 0.4)] {
         let radius = law.slip(pressure, rate);
         let by_pressure =
             (law.slip(pressure + h, rate).value - law.slip(pressure - h, rate).value) / (2.0 * h);

@@ -210,9 +210,8 @@ impl Equations<'_> {
     /// Sets the traction of a closed pair from its slip.
     pub(crate) fn rub(&self, contact: usize, pair: &mut Pair, slip: Along, part: Counted) -> Rubbing {
         let law = self.laws[contact][pair.node];
-        let pressure = (-pair.lambda).max(0.0);
         let rate = self.rate(part);
-        let radius = law.slip(pressure, length(slip) * rate);
+        let radius = law.slip(-pair.lambda, length(slip) * rate);
         if let Some(stiffness) = self.stick_spring(contact, pair) {
             let trial = self.trial(contact, pair, stiffness, slip);
             let tangential = &mut pair.tangential;
@@ -221,7 +220,7 @@ impl Equations<'_> {
             }
             tangential.traction = trial;
         } else if self.model.dimension == 3
-            && radius.value == 0.0
+            && radius.value <= 0.0
             && pair.tangential.friction_state != FrictionState::Stick
             && slip != [0.0; 2]
         {
@@ -309,7 +308,7 @@ impl Equations<'_> {
         let rows = match pair.tangential.friction_state {
             FrictionState::Stick => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
             FrictionState::Slip([along, other]) => {
-                let turns = tangents == 2 && pair.tangential.traction != [0.0; 2];
+                let turns = tangents == 2 && inner(pair.tangential.traction, [along, other]) > 0.0;
                 [[-other, along], [0.0; 2]].into_iter().take(usize::from(turns))
             }
         };

@@ -34,7 +34,7 @@ use crate::state::State;
 
 /// Most changes of stick and slip in one solve.
 const CHANGES: usize = 200;
-/// Rate, as a fraction of the largest one in a solve, that is round-off.
+/// Rate or impulse, as a fraction of the largest one in a solve, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 /// Traction across a direction, relative to the largest one of a slip, that is round-off.
 const TURN: f64 = 1e-13;
@@ -352,6 +352,7 @@ impl Closed {
             let rates = self.slip_rates(&motion.x);
             let all = rates.iter().chain(right.slips).flatten().chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
+            let no_impulse = ROUND_OFF * max_abs(&motion.normal);
             let mut changed = false;
             for (i, law) in laws.iter().enumerate() {
                 let new = law.as_ref().map_or([0.0; 2], |law| slip(i, law, -motion.normal[i]));
@@ -364,7 +365,7 @@ impl Closed {
                 // A tensile impulse takes back what the step did in excess, and so does friction
                 // of a pair that stuck in it. A limited traction has no impulse to take back.
                 let sticks = way.friction_state == FrictionState::Stick;
-                let takes_back = motion.normal[i] > 0.0 && sticks && !law.is_none();
+                let takes_back = motion.normal[i] > no_impulse && sticks && !law.is_none();
                 let cone = if takes_back { traction } else { law.grip(motion.normal[i].abs()) };
                 // What is no slip to round-off has no direction.
                 let rate = [0, 1].map(|a| rates[i][a] - right.slips[i][a]);

@@ -101,6 +101,45 @@ fn impacts_of_a_ring_and_of_a_corner_as_slabs_are_those_of_the_plane() {
     }
 }
 
+/// A stiff block pressed into a soft one, with friction: nodes of the soft one's grooves have two
+/// rows, of which one begins to pull while Newton's method iterates.
+const PRESSED: &str = r#"
+dimension = 2
+material = [
+    { name = "soft", law = "neo-hookean", density = 1.0, young = 1.0, poisson = 0.3 },
+    { name = "stiff", law = "neo-hookean", density = 1.0, young = 30.0, poisson = 0.3 },
+]
+body = [
+    { name = "upper", material = "stiff", element = "Q4", mesh = { shape = "rectangle", min = [-0.4, 1e-6], max = [0.0, 0.3], cells = [6, 3] } },
+    { name = "lower", material = "soft", element = "Q4", mesh = { shape = "rectangle", min = [-0.8, -0.4], max = [0.8, 0.0], cells = [8, 3] } },
+]
+support = [{ on = ["lower.bottom"], fix = ["x", "y"] }, { on = ["upper.top"], move = { x = "0", y = "-0.06*t" } }]
+contact = [{ name = "press", secondary = "upper.bottom", primary = "lower.top", mu = 0.1 }]
+time = { scheme = { kind = "static" }, step = 0.05, end = 1.0 }
+newton = { tolerance = 1e-12 }
+"#;
+
+#[test]
+fn load_steps_of_a_slab_with_friction_in_grooves_are_those_of_the_plane() {
+    let slab = |name: &str, of: &str| {
+        format!("body.{name}.mesh={{ shape = \"extrusion\", of = {of}, height = 0.2, layers = 1 }}")
+    };
+    let rectangle = |min: &str, max: &str, cells: &str| {
+        format!("{{ shape = \"rectangle\", min = {min}, max = {max}, cells = {cells} }}")
+    };
+    let sets = [
+        "dimension=3".to_owned(),
+        slab("upper", &rectangle("[-0.4, 1e-6]", "[0.0, 0.3]", "[6, 3]")),
+        slab("lower", &rectangle("[-0.8, -0.4]", "[0.8, 0.0]", "[8, 3]")),
+        "body.upper.element=\"Hex8\"".to_owned(),
+        "body.lower.element=\"Hex8\"".to_owned(),
+        "support=[{ on = [\"lower.bottom\"], fix = [\"x\", \"y\"] }, { on = [\"upper.top\"], move = { x = \"0\", y = \"-0.06*t\" } }, { on = [\"upper.base\", \"upper.lid\", \"lower.base\", \"lower.lid\"], fix = [\"z\"] }]".to_owned(),
+    ];
+    let [plane, space] = [&[][..], &sets[..]].map(|sets| finish(simulation(PRESSED, sets)));
+    let worst = apart(&plane, &space);
+    assert!(worst < 1e-10, "{worst:e}");
+}
+
 /// Tet10 cells of a mesh that is extruded have quadratic motions along diagonals, too: they are not
 /// T6 cells, but both approach the same impact. Impulse and fall of the disc's centre; the depth of
 /// the block below the disc, where single nodes press, is the same to 1 %.
