@@ -157,8 +157,8 @@ impl Law {
         if pressure > 0.0 { (self.stick * pressure).min(self.limit) } else { 0.0 }
     }
 
-    /// Size of the traction in slip under a pressure −λ at a rate of slip |Ṡ|. Coulomb's law goes on
-    /// to negative ones, so that iterates in which a pair pulls have the forces of one linear
+    /// Size of the traction in slip under a pressure −λ at a rate of slip |Ṡ|. Coulomb's law goes
+    /// on to negative ones, so that iterates in which a pair pulls have the forces of one linear
     /// problem and converge; the pair is then released.
     pub fn slip(&self, pressure: f64, rate: f64) -> Radius {
         if pressure <= 0.0 && self.stick.is_infinite() {
