@@ -236,6 +236,19 @@ impl Rows {
         [unit(along, squares[1], across).0, unit(across, squares[0], along).0]
     }
 
+    /// Turns two consecutive rows a, b over the same nodes, from `first` on, to ia + jb and ib − ja.
+    pub fn turn(&mut self, first: usize, [i, j]: [f64; 2]) {
+        let mixed = |[a, b]: [f64; 2]| [i * a + j * b, i * b - j * a];
+        let gaps = mixed([self.gaps[first], self.gaps[first + 1]]);
+        self.gaps[first..first + 2].copy_from_slice(&gaps);
+        let start = self.dimension * self.starts[first];
+        let size = self.dimension * (self.starts[first + 1] - self.starts[first]);
+        for k in start..start + size {
+            let turned = mixed([self.gradients[k], self.gradients[k + size]]);
+            [self.gradients[k], self.gradients[k + size]] = turned;
+        }
+    }
+
     /// The row with a given index.
     pub fn row(&self, row: usize) -> Row<'_> {
         let range = self.starts[row]..self.starts[row + 1];

@@ -124,8 +124,8 @@ impl Constraints {
         let mut gradient = DiscreteGradient::default();
         let mut derivatives = SlipDerivatives::new(model.dimension);
         let slips = PreventedSlips::of(equations, evaluation);
-        let places = slips.independent(equations, evaluation);
-        constraints.dropped = slips.dropped(evaluation, &places);
+        let places = slips.independent();
+        constraints.dropped = slips.dropped(evaluation);
         let depends = |&(k, p): &(usize, usize)| {
             let contact = &model.contacts[k];
             let is_row = contact.interface.is_constraint() && contact.augmentation.is_none();
@@ -134,7 +134,7 @@ impl Constraints {
         let covered = |place: &(usize, usize)| is_covered(equations, evaluation, *place);
         (constraints.covered, constraints.dependent) =
             evaluation.pressing().filter(depends).partition(covered);
-        for (k, p, number) in places {
+        for &(k, p, number) in places {
             let place = (k, p);
             if number > 0 {
                 let slip = slips.find((k, p, number));
@@ -224,7 +224,7 @@ impl Constraints {
     /// as of a node on a symmetry axis, is theirs.
     pub(crate) fn gap(equations: &Equations, evaluation: &Evaluation) -> f64 {
         let slips = PreventedSlips::of(equations, evaluation);
-        let places = slips.independent(equations, evaluation);
+        let places = slips.independent();
         let counts = |&(k, p): &(usize, usize)| {
             places.binary_search(&(k, p, 0)).is_ok() || !is_covered(equations, evaluation, (k, p))
         };
@@ -240,7 +240,7 @@ impl Constraints {
             let (along, slip) = slips.find((k, p, number));
             weight * (slip.gap - equations.stretch(k, pair, along, evaluation.at.stiffer)).abs()
         };
-        places.into_iter().map(open).fold(gaps, f64::max)
+        places.iter().copied().map(open).fold(gaps, f64::max)
     }
 
     /// Adds a share of a correction to the multipliers of the pairs.

@@ -2,25 +2,27 @@
 
 use carom_contact::{Along, FrictionState, Row, Rows};
 
-use crate::contact::independent::{DEPENDENT, independent_above, same_contact, slip_remainder};
+use crate::contact::independent::{DEPENDENT, Independent, same_contact, slip_remainder};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 
 /// Contact, pair and number of a row in its pair: 0 for its gap.
 pub(crate) type Name = (usize, usize, usize);
 
-/// The slips that friction prevents.
+/// The slips that friction prevents, and which of them and of the gaps are rows.
 pub(crate) struct PreventedSlips {
     /// Their names, ascending, and their components.
     names: Vec<(Name, Along)>,
     rows: Rows,
+    /// The gaps and slips that are rows, ascending.
+    independent: Vec<Name>,
 }
 
 impl PreventedSlips {
     /// Of the closed pairs of an iterate.
     pub(crate) fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let d = equations.model.dimension;
-        let mut slips = Self { names: Vec::new(), rows: Rows::new(d) };
+        let mut slips = Self { names: Vec::new(), rows: Rows::new(d), independent: Vec::new() };
         for (k, p) in evaluation.pressing() {
             let pair = &evaluation.at.pairings[k].pairs[p];
             for (number, along) in equations.prevented(k, pair).enumerate() {
@@ -28,11 +30,59 @@ impl PreventedSlips {
                 slips.rows.push_combined(&evaluation.slips[k], p * (d - 1), &along[..d - 1]);
             }
         }
+        slips.choose(equations, evaluation);
         slips
     }
 
-    fn iter(&self) -> impl Iterator<Item = (Name, Row<'_>)> {
-        self.names.iter().map(|(name, _)| *name).zip(self.rows.iter())
+    /// Chooses the rows. Springs may depend on each other, because each adds its stiffness, and so
+    /// may rows that yield. The slip of a pair comes after all gaps: what depends on both keeps its
+    /// gap.
+    fn choose(&mut self, equations: &Equations, evaluation: &Evaluation) {
+        let model = equations.model;
+        let pair = |k: usize, p: usize| &evaluation.at.pairings[k].pairs[p];
+        let sticks = |k: usize, p: usize| pair(k, p).tangential.friction_state == FrictionState::Stick;
+        let is_elastic = |&(k, p, number): &Name| {
+            let contact = &model.contacts[k];
+            let yields = number == 0 || sticks(k, p);
+            !contact.interface.is_constraint() || contact.augmentation.is_some() && yields
+        };
+        let acts = |row: Row| row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
+        let above = |k: usize, p: usize, row: Row, least: f64| {
+            let bounds = model.contacts[k].bounds(pair(k, p));
+            if bounds { same_contact(model, row).max(least) } else { least }
+        };
+        let mut set = Independent::new(model);
+        for (k, p) in evaluation.pressing() {
+            let row = evaluation.rows[k].row(p);
+            let name = (k, p, 0);
+            if if is_elastic(&name) { acts(row) } else { set.accept(row, above(k, p, row, DEPENDENT)) } {
+                self.independent.push(name);
+            }
+        }
+        let mut first = 0;
+        while let Some(&(name, _)) = self.names.get(first) {
+            let (k, p, _) = name;
+            let count = if sticks(k, p) { model.dimension - 1 } else { 1 };
+            let rows = first..first + count;
+            let row = self.rows.row(first);
+            if is_elastic(&name) {
+                let acting = rows.clone().filter(|&row| acts(self.rows.row(row)));
+                self.independent.extend(acting.map(|row| self.names[row].0));
+            } else {
+                let least = above(k, p, row, slip_remainder(model));
+                let mut along: Vec<Along> = self.names[rows.clone()].iter().map(|name| name.1).collect();
+                let added = set.accept_stick(&mut self.rows, first, least, &mut along);
+                self.names[rows.clone()].iter_mut().zip(along).for_each(|(name, along)| name.1 = along);
+                self.independent.extend(self.names[rows.clone()].iter().take(added).map(|name| name.0));
+            }
+            first = rows.end;
+        }
+        self.independent.sort_unstable();
+    }
+
+    /// The gaps and slips that are rows, ascending.
+    pub(crate) fn independent(&self) -> &[Name] {
+        &self.independent
     }
 
     /// The components and the row of one.
@@ -41,39 +91,13 @@ impl PreventedSlips {
         (self.names[place].1, self.rows.row(place))
     }
 
-    /// The gaps and slips that are rows, ascending. Springs may depend on each other, because each
-    /// adds its stiffness, and so may rows that yield.
-    pub(crate) fn independent(&self, equations: &Equations, evaluation: &Evaluation) -> Vec<Name> {
-        let model = equations.model;
-        let is_elastic = |&(k, p, number): &Name| {
-            let contact = &model.contacts[k];
-            let pair = &evaluation.at.pairings[k].pairs[p];
-            let yields = number == 0 || pair.tangential.friction_state == FrictionState::Stick;
-            !contact.interface.is_constraint() || contact.augmentation.is_some() && yields
-        };
-        let gaps = || evaluation.pressing().map(|(k, p)| ((k, p, 0), evaluation.rows[k].row(p)));
-        // The slip of a pair after all gaps: what depends on both keeps its gap.
-        let least = slip_remainder(model);
-        let bounds = |&(k, p, _): &Name| model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
-        let above = |name: Name, row, least: f64| {
-            (name, row, if bounds(&name) { same_contact(model, row).max(least) } else { least })
-        };
-        let rows = gaps().map(|(name, row)| above(name, row, DEPENDENT));
-        let rows = rows.chain(self.iter().map(|(name, row)| above(name, row, least)));
-        let mut chosen = independent_above(model, rows.filter(|(name, ..)| !is_elastic(name)));
-        let acts = |row: Row| row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
-        let elastic = gaps().chain(self.iter()).filter(|(name, _)| is_elastic(name));
-        chosen.extend(elastic.filter(|(_, row)| acts(*row)).map(|(name, _)| name));
-        chosen.sort_unstable();
-        chosen
-    }
-
-    /// Contact, pair and components of the slips of sticks that are not among these.
-    pub(crate) fn dropped(&self, evaluation: &Evaluation, rows: &[Name]) -> Vec<((usize, usize), Along)> {
+    /// Contact, pair and components of the slips of sticks that are not rows.
+    pub(crate) fn dropped(&self, evaluation: &Evaluation) -> Vec<((usize, usize), Along)> {
         let sticks = |&&((k, p, _), _): &&(Name, Along)| {
             evaluation.at.pairings[k].pairs[p].tangential.friction_state == FrictionState::Stick
         };
-        let dropped = self.names.iter().filter(sticks).filter(|(name, _)| rows.binary_search(name).is_err());
+        let is_row = |name: &Name| self.independent.binary_search(name).is_ok();
+        let dropped = self.names.iter().filter(sticks).filter(|(name, _)| !is_row(name));
         dropped.map(|&((k, p, _), along)| ((k, p), along)).collect()
     }
 }

@@ -347,8 +347,7 @@ fn dragged(equations: &Equations, evaluation: &Evaluation) -> BTreeSet<(usize, u
         return sliding;
     }
     let slips = PreventedSlips::of(equations, evaluation);
-    let rows = slips.independent(equations, evaluation);
-    let dropped = slips.dropped(evaluation, &rows);
+    let dropped = slips.dropped(evaluation);
     let along = |&(place, along): &((usize, usize), Along)| {
         sliding.contains(&place) && inner(along, evaluation.slip_of(place)).abs() > model.gap_tolerance
     };
