@@ -8,6 +8,7 @@ mod elimination;
 #[doc(hidden)]
 pub mod forest;
 mod front;
+mod independent;
 mod linear;
 #[doc(hidden)]
 pub mod mixing;
@@ -31,6 +32,7 @@ pub use condensed::Condensed;
 pub use cone::{Cone, Couplings, Kind};
 pub use difference::jacobian_error;
 pub use elimination::Elimination;
+pub use independent::{Independent, Plane, SparseRow};
 pub use linear::LinearError;
 pub use mixing::Mixing;
 pub use node_matrix::NodeMatrix;

@@ -5,6 +5,7 @@
 mod condensed;
 mod cone;
 mod forest;
+mod independent;
 mod mixing;
 mod pattern;
 mod principal;

@@ -1,8 +1,9 @@
 //! The slips that friction prevents in a stage, and those among them that are rows of its system.
 
+use carom_algebra::Independent;
 use carom_contact::{Along, FrictionState, Row, Rows};
 
-use crate::contact::independent::{DEPENDENT, Independent, same_contact, slip_remainder};
+use crate::contact::independent::{DEPENDENT, accept_stick, on_free_dofs, same_contact, slip_remainder};
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
 
@@ -51,11 +52,16 @@ impl PreventedSlips {
             let bounds = model.contacts[k].bounds(pair(k, p));
             if bounds { same_contact(model, row).max(least) } else { least }
         };
-        let mut set = Independent::new(model);
+        let mut set = Independent::default();
         for (k, p) in evaluation.pressing() {
             let row = evaluation.rows[k].row(p);
             let name = (k, p, 0);
-            if if is_elastic(&name) { acts(row) } else { set.accept(row, above(k, p, row, DEPENDENT)) } {
+            let is_row = if is_elastic(&name) {
+                acts(row)
+            } else {
+                set.accept(on_free_dofs(model, row), above(k, p, row, DEPENDENT))
+            };
+            if is_row {
                 self.independent.push(name);
             }
         }
@@ -71,7 +77,7 @@ impl PreventedSlips {
             } else {
                 let least = above(k, p, row, slip_remainder(model));
                 let mut along: Vec<Along> = self.names[rows.clone()].iter().map(|name| name.1).collect();
-                let added = set.accept_stick(&mut self.rows, first, least, &mut along);
+                let added = accept_stick(model, &mut set, &mut self.rows, first, least, &mut along);
                 self.names[rows.clone()].iter_mut().zip(along).for_each(|(name, along)| name.1 = along);
                 self.independent.extend(self.names[rows.clone()].iter().take(added).map(|name| name.0));
             }

@@ -19,13 +19,14 @@
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
+use carom_algebra::Independent;
 use carom_algebra::sums::max_abs;
 use carom_contact::{
     Along, FrictionPair, FrictionState, Law, Row, Rows, StickSlip, Tangential, inner, length,
 };
 
 use crate::contact::constraints::Constraints;
-use crate::contact::independent::{independent_above, same_contact, slip_remainder};
+use crate::contact::independent::{accept_stick, on_free_dofs, same_contact, slip_remainder};
 use crate::contact::loose::{AT_REST, hold, may_be_held};
 use crate::linear::system::System;
 use crate::model::Model;
@@ -115,15 +116,13 @@ impl Way {
         is_new || motion.turns[pair].abs() > TURN * widest
     }
 
-    /// The components of the rows by which friction constrains a pair, and whether they are of a
-    /// slip.
-    fn prevented(&self, tangents: usize) -> impl Iterator<Item = (Along, bool)> + use<> {
+    /// The components of the rows by which friction constrains a pair: along every tangent in stick,
+    /// and across a slip whose direction is an unknown.
+    fn prevented(&self, tangents: usize) -> impl Iterator<Item = Along> + use<> {
         match (self.friction_state, self.turns) {
-            (FrictionState::Stick, _) => {
-                [([1.0, 0.0], false), ([0.0, 1.0], false)].into_iter().take(tangents)
-            }
+            (FrictionState::Stick, _) => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),
             (FrictionState::Slip([along, other]), turns) => {
-                [([-other, along], true); 2].into_iter().take(usize::from(turns.is_some()))
+                [[-other, along]; 2].into_iter().take(usize::from(turns.is_some()))
             }
         }
     }
@@ -424,25 +423,30 @@ impl Closed {
                 along.for_each(|(along, h)| *along -= factor * h);
             }
         }
+        let mut set = Independent::default();
+        for row in self.normals.rows.iter() {
+            set.accept(on_free_dofs(model, row), same_contact(model, row));
+        }
         let mut slips = Rows::new(d);
-        let mut names = Vec::new();
+        let mut holding = Vec::new();
         for &i in &rubs {
-            for (along, turns) in ways[i].prevented(d - 1) {
-                names.push((i, along, turns));
+            let first = slips.len();
+            let mut prevented: Vec<Along> = ways[i].prevented(d - 1).collect();
+            for along in &prevented {
                 slips.push_combined(&self.slips, i * (d - 1), &along[..d - 1]);
             }
-        }
-        let normals = self.normals.rows.iter().map(|row| (None, row, same_contact(model, row)));
-        let least = |row: Row| slip_remainder(model).max(same_contact(model, row));
-        let tangents = slips.iter().enumerate().map(|(name, row)| (Some(name), row, least(row)));
-        let holding: Vec<usize> =
-            independent_above(model, normals.chain(tangents)).into_iter().flatten().collect();
-        for &name in &holding {
-            let (i, along, turns) = names[name];
-            rows.push_plain(self.places[i], slips.row(name), Some(along));
-            targets.push(inner(along, right.slips[i]));
-            if turns && let Some(compliance) = ways[i].turns {
-                rows.list.iter_mut().last().into_iter().for_each(|row| row.yields = compliance);
+            if prevented.is_empty() {
+                continue;
+            }
+            let least = slip_remainder(model).max(same_contact(model, slips.row(first)));
+            let added = accept_stick(model, &mut set, &mut slips, first, least, &mut prevented);
+            for (row, along) in (first..).zip(prevented).take(added) {
+                rows.push_plain(self.places[i], slips.row(row), Some(along));
+                targets.push(inner(along, right.slips[i]));
+                holding.push((i, along));
+                if let Some(compliance) = ways[i].turns {
+                    rows.list.iter_mut().last().into_iter().for_each(|row| row.yields = compliance);
+                }
             }
         }
         system.mass_with(model, &rows)?;
@@ -461,9 +465,8 @@ impl Closed {
             let size = traction - coefficient * motion.normal[i];
             motion.tangential[i] = ways[i].friction_state.direction().map(|d| d * size);
         }
-        for (&name, q) in holding.iter().zip(forces_held) {
-            let (i, along, turns) = names[name];
-            if turns {
+        for ((i, along), q) in holding.into_iter().zip(forces_held) {
+            if ways[i].turns.is_some() {
                 motion.turns[i] = q;
             } else {
                 (0..2).for_each(|a| motion.tangential[i][a] += q * along[a]);

@@ -118,7 +118,8 @@ impl NodeToPatch {
         }
         let around = own.facets_around(node);
         let normals: Vec<_> = around.iter().map(|&facet| own.middle(facet, y).normal).collect();
-        let normal = self.primary.middle(facet, y).normal;
+        // A dented facet has other normals in its middle.
+        let normal = patch.at(y, xi).normal;
         if presses(&normals, normal, AROUND) {
             return false;
         }
