@@ -236,7 +236,8 @@ impl Rows {
         [unit(along, squares[1], across).0, unit(across, squares[0], along).0]
     }
 
-    /// Turns two consecutive rows a, b over the same nodes, from `first` on, to ia + jb and ib − ja.
+    /// Turns two consecutive rows a, b over the same nodes, from `first` on, to ia + jb and ib −
+    /// ja.
     pub fn turn(&mut self, first: usize, [i, j]: [f64; 2]) {
         let mixed = |[a, b]: [f64; 2]| [i * a + j * b, i * b - j * a];
         let gaps = mixed([self.gaps[first], self.gaps[first + 1]]);

@@ -40,7 +40,8 @@ pub struct Equations<'a> {
     pub motions: Vec<Prescribed>,
     /// Terms of the balance known from the step's start.
     pub known: Vec<f64>,
-    /// Laws of friction of the secondary nodes of each contact at the stage's end.
+    /// Laws of friction of the secondary nodes of each contact: at the stage's end, or where its
+    /// forces are means over the step, in the middle of it.
     pub laws: Vec<Vec<Law>>,
     /// Stiffnesses of augmented Lagrangians at the secondary nodes of each contact, normal and
     /// tangential.
@@ -57,6 +58,8 @@ impl<'a> Equations<'a> {
     pub fn new(model: &'a Model, state: &'a State, stage: Stage, to: f64) -> Result<Self, Rejected> {
         let average = stage.average;
         let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
+        let is_mean = stage.internal == Internal::DiscreteGradient;
+        let laws = model.friction_laws(if is_mean { time } else { to })?;
         let mut equations = Self {
             model,
             state,
@@ -65,7 +68,7 @@ impl<'a> Equations<'a> {
             loads: LoadsAt::default(),
             motions: Vec::new(),
             known: Vec::new(),
-            laws: model.friction_laws(to)?,
+            laws,
             augmented: Vec::new(),
             duration: to - state.time,
         };

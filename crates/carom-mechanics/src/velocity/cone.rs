@@ -116,8 +116,8 @@ impl Way {
         is_new || motion.turns[pair].abs() > TURN * widest
     }
 
-    /// The components of the rows by which friction constrains a pair: along every tangent in stick,
-    /// and across a slip whose direction is an unknown.
+    /// The components of the rows by which friction constrains a pair: along every tangent in
+    /// stick, and across a slip whose direction is an unknown.
     fn prevented(&self, tangents: usize) -> impl Iterator<Item = Along> + use<> {
         match (self.friction_state, self.turns) {
             (FrictionState::Stick, _) => [[1.0, 0.0], [0.0, 1.0]].into_iter().take(tangents),

@@ -649,6 +649,38 @@ scheme = { kind = "energy-momentum" }
 fields_every = 0
 "#;
 
+/// A block that slides on a floor whose coefficient grows, μ = 0.2 + 0.4 t, has the velocity v₀ −
+/// g(0.2 t + 0.2 t²). With `energy-momentum`, whose contact forces are means over a step, the
+/// coefficient is that in its middle; that of its end would give 0.01 less.
+#[test]
+fn a_coefficient_that_grows_is_exact_to_second_order() {
+    let text = r#"
+dimension = 2
+material = [{ name = "stiff", law = "saint-venant-kirchhoff", density = 1.0, young = 1e6, poisson = 0.3 }]
+[[body]]
+name = "block"
+material = "stiff"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 0.2], cells = [4, 1] }
+velocity = [3.0, 0.0]
+gravity = [0.0, -10.0]
+[[contact]]
+name = "floor"
+secondary = "block.bottom"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+mu = "0.2 + 0.4*t"
+[time]
+end = 0.5
+step = 0.01
+scheme = { kind = "energy-momentum" }
+"#;
+    for scheme in [SCHEMES[0], SCHEMES[3], SCHEMES[5]] {
+        let run = finish(simulation(text, &[format!("time.scheme={scheme}")]));
+        let velocity = momenta(&run, &run.state().v)[0] / 0.2;
+        assert!((velocity - 1.5).abs() < 4e-4, "{scheme}: {velocity}");
+    }
+}
+
 /// A block falls flat on a rough floor. The trapezoidal rule, which is the midpoint rule in other
 /// variables, loses nothing: what is lost is the work of contact and friction, also where an
 /// impulse of both closes the gaps.

@@ -219,3 +219,37 @@ body = [
         }
     }
 }
+
+/// A box falls on a corner of a softer block and dents it: the corner of the box presses on a face
+/// whose normal there leans by 16° from that in its middle, and is let go and met again. It was
+/// left to the edge of that face and sank in, and the run stopped.
+#[test]
+fn a_node_in_a_dented_face_is_met_again() {
+    let text = r#"
+dimension = 3
+material = [
+    { name = "hard", law = "neo-hookean", density = 1.0, young = 147.79, poisson = 0.3 },
+    { name = "soft", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 },
+]
+support = [{ on = ["block.bottom"], fix = ["x", "y", "z"] }]
+contact = [{ name = "c1", between = "all", self = false, mu = 1.0 }]
+time = { end = 0.462, step = 0.0154, scheme = { kind = "newmark", beta = 0.25, gamma = 0.5 } }
+[[body]]
+name = "box"
+material = "hard"
+element = "Hex27"
+mesh = { shape = "box", min = [-0.26377, -0.30441, -0.42471], max = [0.26377, 0.30441, 0.42471], cells = [1, 1, 2] }
+place = { rotate = { axis = [0.76564, -0.54162, 0.34706], angle = 52.558 }, shift = [-0.042694, -0.040717, 0.59178] }
+velocity = [-0.62661, 0.39633, -2.4835]
+[[body]]
+name = "block"
+material = "soft"
+element = "Hex27"
+mesh = { shape = "box", min = [-0.5, -0.5, -0.5], max = [0.5, 0.5, 0.5], cells = [2, 2, 2] }
+place = { shift = [-0.5, -0.5, -0.5] }
+"#;
+    let run = finish(simulation(text, &[""; 0]));
+    // The box rises again.
+    let rise = (0..45).map(|node| run.state().v[3 * node + 2]).sum::<f64>() / 45.0;
+    assert!(rise > 0.5, "{rise}");
+}
