@@ -16,7 +16,7 @@ pub type SparseRow = Vec<(usize, f64)>;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Independent {
-    /// What earlier rows left of each, over its largest entry.
+    /// What earlier rows left of each, divided by its largest entry.
     accepted: Vec<SparseRow>,
     /// The accepted row whose largest entry is in this column.
     pivots: BTreeMap<usize, usize>,
@@ -44,17 +44,21 @@ impl Independent {
     /// Adds those combinations of two rows that do not depend on the rows added before.
     pub fn accept_plane(&mut self, rows: [SparseRow; 2], least: f64) -> Plane {
         let before = self.accepted.len();
-        let [first, second] = rows.map(|row| self.rest(row, 0));
-        let has_first = self.add(first.clone(), least);
-        let rest = self.rest(second.clone(), before);
-        let [i, j] = match (has_first, self.add(rest, least)) {
-            (false, false) => return Plane::Nothing,
-            (true, true) => return Plane::All,
-            // The two are parallel.
-            (true, false) => [1.0, ratio(&second, &first)],
-            (false, true) => [ratio(&first, &second), 1.0],
-        };
-        Plane::Line([i, j].map(|part| part / i.hypot(j)))
+        let rests = rows.map(|row| self.rest(row, 0));
+        // The longer one takes what is small in the other one with it.
+        let [longer, other] = if square(&rests[0]) >= square(&rests[1]) { [0, 1] } else { [1, 0] };
+        if !self.add(rests[longer].clone(), least) {
+            return Plane::Nothing;
+        }
+        let rest = self.rest(rests[other].clone(), before);
+        if self.add(rest, least) {
+            return Plane::All;
+        }
+        // The two are parallel.
+        let share = ratio(&rests[other], &rests[longer]);
+        let mut line = [share; 2];
+        line[longer] = 1.0;
+        Plane::Line(line.map(|part| part / share.hypot(1.0)))
     }
 
     /// What the added rows, from the one with this index on, leave of a row.
@@ -96,5 +100,10 @@ impl Independent {
 fn ratio(row: &SparseRow, of: &SparseRow) -> f64 {
     let at = |column: usize| row.iter().find(|entry| entry.0 == column).map_or(0.0, |entry| entry.1);
     let common: f64 = of.iter().map(|&(column, value)| value * at(column)).sum();
-    common / of.iter().map(|(_, value)| value * value).sum::<f64>()
+    common / square(of)
+}
+
+/// Sum of the squares of the entries.
+fn square(row: &SparseRow) -> f64 {
+    row.iter().map(|(_, value)| value * value).sum()
 }

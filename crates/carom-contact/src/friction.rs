@@ -124,9 +124,9 @@ pub struct Law {
 /// Size of the traction of a slip, the radius of the friction cone, with its derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Radius {
-    /// Radius r of the friction cone.
+    /// Radius r of the friction cone; negative where the pair pulls.
     pub value: f64,
-    /// Derivative ∂r/∂|λ| of the radius by the pressure.
+    /// Derivative ∂r/∂(−λ) of the radius by the pressure.
     pub by_pressure: f64,
     /// Derivative ∂r/∂|Ṡ| of the radius by the rate of slip.
     pub by_rate: f64,
@@ -161,7 +161,7 @@ impl Law {
     /// on to negative ones, so that iterates in which a pair pulls have the forces of one linear
     /// problem and converge; the pair is then released.
     pub fn slip(&self, pressure: f64, rate: f64) -> Radius {
-        if pressure <= 0.0 && self.stick.is_infinite() {
+        if pressure <= 0.0 && (self.stick.is_infinite() || self.limit == 0.0) {
             return Radius::default();
         }
         let coefficient = self.coefficient(rate);

@@ -9,7 +9,7 @@ fn what_is_left_of_a_plane_is_a_line() {
     let taken = [[0.0, 0.6, 0.8, 0.5], [1.0, 0.0, 2.0, 0.0]];
     let line = [0.3, -0.2, 0.5, 1.0];
     let sparse = |row: [f64; 4]| (4..8).zip(row).collect::<Vec<_>>();
-    for (i, j) in [(1.0, 0.0), (0.6, 0.8), (-0.8, 0.6), (2e-3, 1.0), (0.0, 1.0)] {
+    for (i, j) in [(1.0, 0.0), (0.6, 0.8), (-0.8, 0.6), (2e-3, 1.0), (0.0, 1.0), (1.0, 3e-3)] {
         let mut set = Independent::default();
         assert!(taken.iter().all(|row| set.accept(sparse(*row), 1e-8)));
         let row = |share: f64, parts: [f64; 2]| {

@@ -75,6 +75,8 @@ fn the_radius_has_its_derivatives_and_its_limits() {
         assert!((radius.by_pressure - by_pressure).abs() < 1e-8, "{pressure} {rate}");
         assert!((radius.by_rate - by_rate).abs() < 1e-8, "{pressure} {rate}");
     }
+    let none = Law { limit: 0.0, ..law };
+    assert!(none.is_none() && none.slip(-2.0, 0.0) == Radius::default());
     let tresca = Law { stick: f64::INFINITY, slip: f64::INFINITY, decay: 0.0, limit: 0.7 };
     assert_eq!(
         (tresca.grip(1e-9), tresca.slip(1e-9, 1.0)),

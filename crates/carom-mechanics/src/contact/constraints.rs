@@ -188,13 +188,14 @@ impl Constraints {
         self.directions.push_row(slip);
         let gradient = self.rows.gradient_mut(self.rows.len() - 1);
         gradient.fill(0.0);
+        let held = inner(along, traction);
         for tangent in (0..2).filter(|&tangent| along[tangent] != 0.0) {
             let turned = &derivatives.turned[tangent];
             let slope = &derivatives.slopes[tangent];
             gradient.iter_mut().zip(slope).for_each(|(sum, slope)| *sum += along[tangent] * slope);
             // The force of a slip is that of its gap.
             if pair.tangential.friction_state == FrictionState::Stick {
-                let force = along[tangent] * traction[tangent];
+                let force = along[tangent] * held;
                 curvature.iter_mut().zip(turned).for_each(|(sum, h)| *sum += force * h);
             }
         }

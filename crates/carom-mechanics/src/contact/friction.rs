@@ -220,7 +220,7 @@ impl Equations<'_> {
             }
             tangential.traction = trial;
         } else if self.model.dimension == 3
-            && radius.value <= 0.0
+            && radius.value == 0.0
             && pair.tangential.friction_state != FrictionState::Stick
             && slip != [0.0; 2]
         {

@@ -66,16 +66,15 @@ impl PreventedSlips {
             }
         }
         let mut first = 0;
-        while let Some(&(name, _)) = self.names.get(first) {
-            let (k, p, _) = name;
+        while let Some(&(name @ (k, p, _), _)) = self.names.get(first) {
             let count = if sticks(k, p) { model.dimension - 1 } else { 1 };
             let rows = first..first + count;
-            let row = self.rows.row(first);
             if is_elastic(&name) {
                 let acting = rows.clone().filter(|&row| acts(self.rows.row(row)));
                 self.independent.extend(acting.map(|row| self.names[row].0));
             } else {
-                let least = above(k, p, row, slip_remainder(model));
+                let above = |least, row| above(k, p, self.rows.row(row), least);
+                let least = rows.clone().fold(slip_remainder(model), above);
                 let mut along: Vec<Along> = self.names[rows.clone()].iter().map(|name| name.1).collect();
                 let added = accept_stick(model, &mut set, &mut self.rows, first, least, &mut along);
                 self.names[rows.clone()].iter_mut().zip(along).for_each(|(name, along)| name.1 = along);

@@ -351,7 +351,8 @@ impl Closed {
             let rates = self.slip_rates(&motion.x);
             let all = rates.iter().chain(right.slips).flatten().chain(right.gaps);
             let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
-            let no_impulse = ROUND_OFF * max_abs(&motion.normal);
+            let impulses = motion.tangential.iter().map(|q| length(*q));
+            let no_impulse = ROUND_OFF * impulses.fold(max_abs(&motion.normal), f64::max);
             let mut changed = false;
             for (i, law) in laws.iter().enumerate() {
                 let new = law.as_ref().map_or([0.0; 2], |law| slip(i, law, -motion.normal[i]));
@@ -438,7 +439,8 @@ impl Closed {
             if prevented.is_empty() {
                 continue;
             }
-            let least = slip_remainder(model).max(same_contact(model, slips.row(first)));
+            let same = (first..slips.len()).map(|row| same_contact(model, slips.row(row)));
+            let least = same.fold(slip_remainder(model), f64::max);
             let added = accept_stick(model, &mut set, &mut slips, first, least, &mut prevented);
             for (row, along) in (first..).zip(prevented).take(added) {
                 rows.push_plain(self.places[i], slips.row(row), Some(along));
