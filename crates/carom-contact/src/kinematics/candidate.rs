@@ -184,7 +184,7 @@ impl NodeToFacet {
             return false;
         }
         let shape = self.primary.facet(facet);
-        // A dented facet has another normal in its middle.
+        // The normal where the node meets the facet: in the middle of a dented one it differs.
         let normal = shape.at(y, xi.clamp(-1.0, 1.0)).normal;
         let normals: Vec<_> = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal).collect();
         let corner = shape.at(y, if forward { 1.0 } else { -1.0 }).position;

@@ -29,11 +29,11 @@
 //! ```
 //!
 //! which remains valid as a stick across d where nothing slips along it. A slip without traction,
-//! as in the iterate in which a pair closes, has the direction of S. On a spring, d is that of
-//! q_s + kS, so that its row is that of a spring of stiffness k r/|q_s + kS| across d. The
-//! components of q_s are those along tangents that turn with the normal, and between steps about it
-//! (`friction_state.rs`). There q acts along H(y_s): in the averaged forces of the next step and in
-//! what is recorded.
+//! as in the iterate in which a pair closes, has the direction of S; where a pair pulls, it keeps
+//! it. On a spring, d is that of q_s + kS, so that its row is that of a spring of stiffness k
+//! r/|q_s + kS| across d. The components of q_s are those along tangents that turn with the normal,
+//! and between steps about it (`friction_state.rs`). There q acts along H(y_s): in the averaged
+//! forces of the next step and in what is recorded.
 
 use carom_contact::{
     Along, ContactError, FrictionPair, FrictionState, Law, Pair, Radius, Row, Rows, Tangential, inner, length,

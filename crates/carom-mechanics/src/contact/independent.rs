@@ -68,10 +68,11 @@ pub(crate) fn independent_above<'a, T>(
         .collect()
 }
 
-/// Adds the rows of a stick, as many as there are tangents, of `rows` from `first` on, to
-/// independent ones; returns how many were added, the first ones. Where others leave only one
-/// direction to it, as the gaps of a node in a groove do, the rows, and their components `along`
-/// the tangents, are turned to that direction and the one across it.
+/// Adds the rows of a slip that is prevented, of `rows` from `first` on, to independent ones: one
+/// per tangent of a stick, or the one across a slip. Returns how many of them were added, from the
+/// first on. Where others leave only one direction to it, as the gaps of a node in a groove do, the
+/// rows, and their components `along` the tangents, are turned to that direction and the one across
+/// it.
 pub(crate) fn accept_stick(
     model: &Model,
     set: &mut Independent,

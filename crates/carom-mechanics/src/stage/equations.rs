@@ -40,8 +40,8 @@ pub struct Equations<'a> {
     pub motions: Vec<Prescribed>,
     /// Terms of the balance known from the step's start.
     pub known: Vec<f64>,
-    /// Laws of friction of the secondary nodes of each contact: at the stage's end, or where its
-    /// forces are means over the step, in the middle of it.
+    /// Laws of friction of the secondary nodes of each contact: at the stage's end, or where
+    /// forces are discrete gradients over the step, in the middle of it.
     pub laws: Vec<Vec<Law>>,
     /// Stiffnesses of augmented Lagrangians at the secondary nodes of each contact, normal and
     /// tangential.

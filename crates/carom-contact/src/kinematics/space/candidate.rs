@@ -118,7 +118,7 @@ impl NodeToPatch {
         }
         let around = own.facets_around(node);
         let normals: Vec<_> = around.iter().map(|&facet| own.middle(facet, y).normal).collect();
-        // A dented facet has other normals in its middle.
+        // The normal where the node meets the facet: in the middle of a dented one it differs.
         let normal = patch.at(y, xi).normal;
         if presses(&normals, normal, AROUND) {
             return false;
