@@ -16,7 +16,7 @@ pub type SparseRow = Vec<(usize, f64)>;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Independent {
-    /// What earlier rows left of each, divided by its largest entry.
+    /// The rows, each without the parts along earlier ones and divided by its largest entry.
     accepted: Vec<SparseRow>,
     /// The accepted row whose largest entry is in this column.
     pivots: BTreeMap<usize, usize>,
@@ -25,11 +25,12 @@ pub struct Independent {
 /// Which combinations of two rows are independent of earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Plane {
-    /// None.
+    /// Both rows depend on earlier ones.
     Nothing,
-    /// Those of one direction, i times the first row and j times the second one, i² + j² = 1.
+    /// One combination is independent: i times the first row and j times the second one, where i² +
+    /// j² = 1. The one across it, i times the second row less j times the first, is not.
     Line([f64; 2]),
-    /// All.
+    /// Both rows are independent.
     All,
 }
 
@@ -61,7 +62,7 @@ impl Independent {
         Plane::Line(line.map(|part| part / share.hypot(1.0)))
     }
 
-    /// What the added rows, from the one with this index on, leave of a row.
+    /// A row without its parts along the rows added before, from the one with the index `from` on.
     fn rest(&self, mut row: SparseRow, mut from: usize) -> SparseRow {
         // An added row contains pivots of later ones only: in ascending order each occurs once.
         while let Some((r, factor)) = row
