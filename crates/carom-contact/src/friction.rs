@@ -50,6 +50,9 @@ pub enum FrictionState {
 }
 
 impl FrictionState {
+    /// The state of a pair without friction: it slips, in any direction.
+    pub const FREE: Self = Self::Slip([1.0, 0.0]);
+
     /// The state in which a closing pair starts, from its slip in the iterate: the projection of
     /// the traction onto the cone of a pressure that is still zero.
     pub fn of(slip: Along, tolerance: f64) -> Self {
@@ -57,10 +60,9 @@ impl FrictionState {
         if size > tolerance { Self::Slip(slip.map(|s| s / size)) } else { Self::Stick }
     }
 
-    /// The state in which a closing pair starts under a law, from its slip: without friction it
-    /// slips in any direction.
+    /// The state in which a closing pair starts under a law, from its slip.
     pub fn under(law: &Law, slip: Along, tolerance: f64) -> Self {
-        if law.is_none() { Self::Slip([1.0, 0.0]) } else { Self::of(slip, tolerance) }
+        if law.is_none() { Self::FREE } else { Self::of(slip, tolerance) }
     }
 
     /// Direction d of the slip; zero in stick.

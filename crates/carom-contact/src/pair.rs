@@ -224,6 +224,18 @@ pub enum ContactError {
 }
 
 impl ContactError {
+    /// The error of a pair whose secondary node has another number.
+    pub(crate) fn at_node(mut self, number: usize) -> Self {
+        match &mut self {
+            Self::Focal { node, .. }
+            | Self::Center { node }
+            | Self::Tip { node, .. }
+            | Self::Edges { node, .. }
+            | Self::Lost { node, .. } => *node = number,
+        }
+        self
+    }
+
     /// Reports an error for a pair without a unique closest point, a ≤ 0; `node`: global number of
     /// the secondary node.
     pub(crate) fn unless_regular(node: usize, pair: &Pair, a: f64) -> Result<(), Self> {

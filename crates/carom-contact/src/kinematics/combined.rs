@@ -1,8 +1,8 @@
 //! Several kinds of contact of the same sides in one set of pairs, numbered part after part: nodes
 //! of either side against facets of the other one (`reversed.rs`), and what may lie between nodes:
 //! in space sharp edges against sharp edges, the edges of the primary being numbered after its
-//! facets; in the plane convex corners and round parts of an obstacle against facets; and
-//! coefficients of a pressure field with bounds for single nodes.
+//! facets, and points of edges against facets; in the plane convex corners and round parts of an
+//! obstacle against facets; and coefficients of a pressure field with bounds for single nodes.
 
 use carom_algebra::{Mat, Threads};
 

@@ -60,7 +60,7 @@ pub use outward::Outward;
 pub use passed::Passed;
 pub use reversed::NodesWithDepth;
 pub(crate) use space::cross;
-pub use space::{Boundary, ClosedSurface, EdgeToEdge, NodeToPatch};
+pub use space::{Boundary, ClosedSurface, EdgePoints, EdgeToEdge, NodeToPatch};
 pub use surface::Surface;
 pub use swept::{Crossings, SpaceHit, Swept, SweptEdges, SweptPatch, SweptTest};
 pub use tip_to_facet::TipToFacet;
@@ -88,15 +88,16 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// twice: as nodes of the later place, then as nodes of the earlier one.
     fn secondary(&self) -> &[usize];
 
-    /// Number of secondary nodes. Sharp edges follow the nodes in [`secondary`](Self::secondary),
-    /// each represented by one of its nodes, and so do convex parts of an obstacle, each
-    /// represented by the node that is nearest to it in the reference configuration.
+    /// Number of secondary nodes. Sharp edges and points of them follow the nodes in
+    /// [`secondary`](Self::secondary), each represented by a node of the edge, and so do convex
+    /// parts of an obstacle, each represented by the node that is nearest to it in the reference
+    /// configuration.
     fn nodes(&self) -> usize {
         self.secondary().len()
     }
 
     /// Number of the first entries of [`secondary`](Self::secondary) that can have friction: all
-    /// but sharp edges.
+    /// but sharp edges and their points.
     fn rubbing(&self) -> usize {
         self.secondary().len()
     }

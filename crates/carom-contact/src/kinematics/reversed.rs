@@ -6,6 +6,9 @@
 //! other nodes of the primary                 g ≥ −d,   d a fiftieth of a secondary facet
 //! ```
 //!
+//! In space the points between the nodes of sharp edges, on either side, are held like those other
+//! nodes (`space/edge_points.rs`).
+//!
 //! No secondary node enters the primary, and no corner of the primary cuts into an edge of the
 //! secondary between two of its nodes. The other nodes follow the secondary side's edges to within
 //! d: with d = 0 the sides would be constrained twice, and meshes that do not match would lock.

@@ -5,6 +5,7 @@
 mod active_set;
 mod derivatives;
 mod discrete_gradient;
+mod edge_points;
 mod edges;
 mod friction;
 mod inf_sup;

@@ -348,7 +348,7 @@ impl Equations<'_> {
             && pair.node >= self.model.contacts[contact].kinematics.rubbing()
         {
             // Edges have neither friction nor its springs.
-            pair.tangential.friction_state = FrictionState::Slip([1.0, 0.0]);
+            pair.tangential.friction_state = FrictionState::FREE;
         }
         if begins {
             self.begin_spring(contact, pair, slip, part);

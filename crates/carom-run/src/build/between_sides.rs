@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 
 use carom_case::{self as case, Case, ContactSpec};
 use carom_contact::{
-    Boundary, Combined, ContactPoint, Detection, EdgeToEdge, Kinematics, Mortar, NodeToFacet, NodeToObstacle,
-    NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
+    Boundary, Combined, ContactPoint, Detection, EdgePoints, EdgeToEdge, Kinematics, Mortar, NodeToFacet,
+    NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
 
@@ -101,12 +101,23 @@ impl Bodies<'_> {
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
             .with_single_facets(single)
             .of_body(opposite.clone());
+        let points = EdgePoints::new(&opposite, side.clone(), self.depth_in(primary), self.reference);
+        let their_points =
+            EdgePoints::new(&side, opposite.clone(), self.depth_in(secondary), self.reference).reversed();
         let others = NodeToPatch::new(own.nodes, opposite)
             .with_allowed(own.depths)
             .with_single_facets(single)
             .of_body(side)
             .reversed();
-        Combined::new(vec![Box::new(nodes), Box::new(others), Box::new(edges)])
+        let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(nodes), Box::new(others), Box::new(edges)];
+        let spec = &self.case.contacts[k];
+        // An overlap that is kept is one of nodes, which points between them would close; springs
+        // let in nodes and points alike, and those of both would add up.
+        if spec.overlap == case::Overlap::Refuse && spec.enforcement.is_exact() {
+            parts.push(Box::new(points));
+            parts.push(Box::new(their_points));
+        }
+        Combined::new(parts)
     }
 
     /// Contact with a rigid obstacle, in the plane with its convex parts.

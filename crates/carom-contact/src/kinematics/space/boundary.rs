@@ -22,6 +22,8 @@ pub(super) const SHARP: f64 = 0.87;
 const FOLDED: f64 = 1e-6;
 /// Number of pieces into which points between its ends divide a sharp edge.
 const PIECES: usize = 8;
+/// Contact holds every second of these points.
+const HELD: usize = 2;
 
 /// The facets of a side in space, all of one shape, which may be followed by the rest of the
 /// boundary of its body.
@@ -47,6 +49,14 @@ pub struct Boundary {
 pub(crate) struct EdgeOfFacet {
     pub(crate) facet: usize,
     pub(crate) edge: usize,
+}
+
+/// A point of a sharp edge, between its nodes.
+pub(super) struct EdgePoint {
+    /// The facets that meet at the edge.
+    pub(super) facets: Vec<usize>,
+    /// Nodes of the edge with their weights in the point.
+    pub(super) nodes: Vec<(usize, f64)>,
 }
 
 /// A point relative to the nearest point of a facet.
@@ -363,19 +373,38 @@ impl Boundary {
         all.filter(is_sharp).collect()
     }
 
-    /// Points between the ends of the side's sharp convex edges, each as nodes with weights.
-    pub fn points_of_sharp_edges(&self, y: &[f64]) -> Vec<Vec<(usize, f64)>> {
+    /// Points of the side's sharp convex edges, between their nodes, at which contact holds them.
+    pub(super) fn edge_points(&self, y: &[f64]) -> Vec<EdgePoint> {
         let mut points = Vec::new();
         for EdgeOfFacet { facet, edge } in self.sharp_edges(y) {
-            let patch = self.patch(facet);
-            for k in 1..PIECES {
-                let values =
-                    self.shape.functions(patch.along(edge, k as f64 / PIECES as f64)).values.into_iter();
-                let weights = patch.nodes.iter().copied().zip(values);
-                points.push(weights.filter(|(_, weight)| weight.abs() > f64::EPSILON).collect());
-            }
+            let facets: Vec<usize> = std::iter::once(facet).chain(self.across(facet, edge)).collect();
+            let nodes = (1..PIECES).filter(|k| k % HELD == 0).map(|k| self.on_edge(facet, edge, k));
+            let between = nodes.filter(|nodes| nodes.len() > 1);
+            points.extend(between.map(|nodes| EdgePoint { facets: facets.clone(), nodes }));
         }
         points
+    }
+
+    /// The k-th of the points between the ends of an edge, as nodes with weights.
+    fn on_edge(&self, facet: usize, edge: usize, k: usize) -> Vec<(usize, f64)> {
+        let patch = self.patch(facet);
+        let values = self.shape.functions(patch.along(edge, k as f64 / PIECES as f64)).values.into_iter();
+        let weights = patch.nodes.iter().copied().zip(values);
+        weights.filter(|(_, weight)| weight.abs() > f64::EPSILON).collect()
+    }
+
+    /// The boundary with points of edges, numbered from `first` on.
+    pub(super) fn with_points(mut self, first: usize, points: &[EdgePoint]) -> Self {
+        self.around.extend(points.iter().enumerate().map(|(k, point)| (first + k, point.facets.clone())));
+        self
+    }
+
+    /// Points between the ends of the side's sharp convex edges, each as nodes with weights.
+    pub fn points_of_sharp_edges(&self, y: &[f64]) -> Vec<Vec<(usize, f64)>> {
+        let edges = self.sharp_edges(y).into_iter();
+        edges
+            .flat_map(|EdgeOfFacet { facet, edge }| (1..PIECES).map(move |k| self.on_edge(facet, edge, k)))
+            .collect()
     }
 
     /// Position relative to the boundary of a point whose nearest facet, and the nearest point of

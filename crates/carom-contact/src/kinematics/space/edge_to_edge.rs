@@ -133,8 +133,7 @@ impl EdgeToEdge {
         let mut pair = Pair::open(edges[0], self.sides[1].facets() + edges[1], xi[0]);
         pair.eta = xi[1];
         // It has no friction.
-        pair.tangential =
-            Tangential { friction_state: FrictionState::Slip([1.0, 0.0]), ..Tangential::default() };
+        pair.tangential = Tangential { friction_state: FrictionState::FREE, ..Tangential::default() };
         pair
     }
 

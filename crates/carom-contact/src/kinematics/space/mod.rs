@@ -10,6 +10,7 @@ mod crosses;
 mod crossing;
 mod edge_crossing;
 mod edge_gap;
+mod edge_points;
 mod edge_to_edge;
 mod edges;
 #[doc(hidden)]
@@ -25,6 +26,7 @@ mod paths;
 
 pub use boundary::Boundary;
 pub use closed_surface::ClosedSurface;
+pub use edge_points::EdgePoints;
 pub use edge_to_edge::EdgeToEdge;
 pub use node_to_patch::NodeToPatch;
 pub(crate) use patch::{Feature, cross};
