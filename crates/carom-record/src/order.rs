@@ -21,7 +21,7 @@ pub const MARGIN: f64 = 0.3;
 pub(crate) const SAFE: f64 = 1.25;
 
 /// A difference below this fraction of the values is round-off.
-const ROUND_OFF: f64 = 1e-12;
+pub(crate) const ROUND_OFF: f64 = 1e-12;
 
 /// An established order, and the extrapolated value.
 #[derive(Clone, Copy, Debug, PartialEq)]

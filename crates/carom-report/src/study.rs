@@ -13,7 +13,6 @@ mod page;
 mod ranked;
 mod reproduce;
 mod settings;
-mod systems;
 mod theory;
 mod trend;
 mod verdict;
@@ -22,6 +21,7 @@ mod warnings;
 use std::path::Path;
 
 use carom_record::metrics;
+use carom_record::study::systems::Systems;
 use carom_record::study::{Study, StudyManifest};
 
 use crate::figure::Figure;
@@ -30,7 +30,6 @@ use crate::publish::{ReportError, ReportSummary, publish};
 use crate::recorded::Recorded;
 use crate::setup;
 use collected::{Column, Measured, Origin, collect};
-use systems::Systems;
 
 /// Writes the figures, tables and page of a study directory, from the records alone. Arms are read
 /// one by one to limit the memory that long histories need.
@@ -39,13 +38,13 @@ use systems::Systems;
 /// A file cannot be read or written.
 pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     let manifest = StudyManifest::read(directory)?;
-    let mut systems = Systems::of(&manifest);
+    let systems = Systems::of(&manifest);
     let mut measured = Measured(manifest.overlays);
     let mut columns: Vec<Column> = Vec::new();
     let mut time = String::new();
     let mut origins = Vec::new();
     let mut picture = None;
-    let mut study = Study::open(directory, &mut |arm, run| {
+    let study = Study::open(directory, &mut |arm, run| {
         picture = picture.take().or_else(|| {
             let fields = run.field(run.fields.first()?).ok()?;
             setup::figure(&Recorded::new(run.clone()).ok()?, &fields)
@@ -54,11 +53,10 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
             run.history.unit("time").clone_into(&mut time);
             measured.add(metrics::overlays(run));
         }
-        collect(&mut columns, &measured, &mut systems, arm, run);
+        collect(&mut columns, &measured, arm, run);
         origins.push(Origin::of(arm, run));
     })?;
     study.write_tables()?;
-    systems.convert(&mut study);
     let mut plots: Vec<Plot> = comparison::plot(&study).into_iter().collect();
     plots.extend(histories::plots(&study, &columns, &measured, &time));
     plots.extend(trend::plots(&study));
@@ -66,7 +64,7 @@ pub fn study(directory: &Path) -> Result<ReportSummary, ReportError> {
     // Figures that are folded away come last, so that those shown have successive numbers.
     plots.sort_by_key(|plot| plot.folded);
     let figures: Vec<(bool, Figure)> = plots.iter().map(|plot| (plot.folded, plot.figure())).collect();
-    let page = page::page(&study, picture.as_ref(), &figures, &origins, &systems);
+    let page = page::page(&study, picture.as_ref(), &figures, &origins);
     let all = picture.iter().chain(figures.iter().map(|(_, figure)| figure));
     publish(directory, "study.html", &page, all, Vec::new())
 }

@@ -1,10 +1,12 @@
 //! Checks that what the expectations and measured data of a study refer to exists in the records of
 //! its arms: names of arms, columns and metrics.
 
-use carom_record::Reason;
+use std::collections::BTreeSet;
+
 use carom_record::metrics::Overlay;
 use carom_record::question::{Quantity, Question, Series, column_metric_names, metric_names};
 use carom_record::study::{Comparison, Sought};
+use carom_record::{OrderOf, Reason};
 use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
@@ -22,6 +24,9 @@ pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Probl
     let known = Known { arms, overlays: &file.overlays };
     overlays(&known, problems);
     for (i, expect) in file.expects.iter().enumerate() {
+        if let Some(order) = &expect.order {
+            order_of(i, order, arms, problems);
+        }
         let asked = match (&expect.order, &expect.deviation) {
             (Some(order), _) => order.quantity(),
             (None, Some(_)) => Series::parse(&expect.what).map(Sought::Column),
@@ -41,6 +46,25 @@ pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Probl
             let help = "`carom explain` lists the metrics; a column is asked for as 'last A.uy of \"ARM\"'";
             problems.push(Problem::new(format!("claim[{i}].compare"), what, why, help));
         }
+    }
+}
+
+/// Adds the problems of an expected order: a key that no arm sets, an exact value of a column.
+fn order_of(i: usize, order: &OrderOf, arms: &[Planned], problems: &mut Vec<Problem>) {
+    let key = |(set, _): &(String, String)| set.split('=').next().unwrap_or_default().trim().to_owned();
+    let keys: BTreeSet<String> = arms.iter().flat_map(|arm| &arm.draft.sets).map(key).collect();
+    let is_one_case = arms.iter().all(|arm| arm.draft.case.is_none());
+    if is_one_case && !keys.contains(&order.against) {
+        let what = format!("no arm sets `{}`", order.against);
+        let why = "an order is observed from arms that differ in this key";
+        let keys: Vec<&String> = keys.iter().collect();
+        problems.push(Problem::new(format!("expect[{i}].against"), what, why, meant(&order.against, &keys)));
+    }
+    if order.exact.is_some() && matches!(order.quantity(), Ok(Sought::Column(_))) {
+        let what = format!("`exact` is the exact value of a number, and `{}` is a column", order.of);
+        let why = "the error of a column is that with respect to a formula of t, or to the reference";
+        let help = format!("write for example `of = \"last {}\"`, or leave `exact` out", order.of);
+        problems.push(Problem::new(format!("expect[{i}].exact"), what, why, help));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Checks that the records of a study will contain what its goal compares.
 
 use carom_record::study::design::Goal;
-use carom_record::study::groups::is_stress;
+use carom_record::study::groups::{is_stress, is_trajectory};
 use carom_run::case::{Case, Problem, history_columns};
 
 use crate::file::StudyFile;
@@ -40,6 +40,14 @@ fn compared(goal: Goal) -> Option<Compared> {
 /// Adds the problem that an arm, or the exact solution, has nothing that the goal compares.
 pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Problem>) {
     let Some(goal) = file.goal else { return };
+    let has_motion = |arm: &Planned| arm.case.exact.keys().any(|column| is_trajectory(column));
+    let is_of_motion = matches!(goal, Goal::Trajectory | Goal::Cost);
+    if is_of_motion && file.reference.as_deref() == Some("exact") && !arms.first().is_some_and(has_motion) {
+        let what = format!("the exact solution has nothing that the goal `{}` compares", goal.word());
+        let why = "[exact] has no displacement and no centre of a body";
+        let help = "add a formula for one to [exact] of the case, or write `reference = \"fine\"`";
+        problems.push(Problem::new("reference", what, why, help));
+    }
     let Some(Compared { is_column, missing, help }) = compared(goal) else { return };
     let is_recorded = |case: &Case| {
         let has_contact = goal != Goal::Force || !case.contacts.is_empty();

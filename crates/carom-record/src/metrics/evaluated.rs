@@ -75,6 +75,18 @@ pub(crate) fn of_columns(history: &History, column: &str) -> Vec<Metric> {
     evaluated(&COLUMNS, &Given::of(history).with_column(column)).collect()
 }
 
+/// The metrics of a column, with those of its free oscillation that are defined.
+pub(crate) fn of_column(history: &History, column: &str) -> Vec<Metric> {
+    of_given_column(&Given::of(history), column).collect()
+}
+
+fn of_given_column<'a>(given: &Given<'a>, column: &'a str) -> impl Iterator<Item = Metric> {
+    let of_column = given.with_column(column);
+    let free: Vec<Metric> = evaluated(&FREE, &of_column).filter(|metric| metric.value.is_some()).collect();
+    let all: Vec<Metric> = evaluated(&COLUMNS, &of_column).collect();
+    all.into_iter().chain(free)
+}
+
 /// The metrics of measured data, named `METRIC:NAME`.
 pub fn of_measured(history: &History, overlay: &Overlay) -> Vec<Metric> {
     evaluated(&OVERLAY, &Given::of(history).beside(overlay)).collect()
@@ -122,9 +134,7 @@ pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
         metrics.extend(evaluated(&OVERLAY, &given.beside(overlay)));
     }
     for column in probe_columns(run) {
-        let of_column = given.with_column(column);
-        metrics.extend(evaluated(&COLUMNS, &of_column));
-        metrics.extend(evaluated(&FREE, &of_column).filter(is_defined));
+        metrics.extend(of_given_column(&given, column));
     }
     metrics.extend(evaluated(&WORK, &given));
     metrics

@@ -22,8 +22,9 @@ const PER_WINDOW: f64 = 8.0;
 /// phases.
 const PER_ROW: f64 = 1.373;
 
-/// Instants at which errors are sampled.
-const SAMPLES: usize = 512;
+/// Instants at which errors are sampled; a prime number, so that a periodic motion is not seen at
+/// one phase only.
+const SAMPLES: usize = 1021;
 
 /// Window of an average, and the span within which it stays.
 struct Around {
@@ -169,6 +170,15 @@ impl<'a> Signal<'a> {
         };
         let all = (0..self.values.len()).flat_map(|component| (0..SAMPLES).map(move |k| (component, k)));
         Some(all.map(off).collect())
+    }
+
+    /// Largest distance of smooth values between rows from their chords, root mean square over the
+    /// rows: h² |x''|/8 by second differences.
+    pub fn chords(&self) -> f64 {
+        let rows = self.times.len().saturating_sub(2).max(1) as f64;
+        let off = |x: &[f64]| (x[0] - 2.0 * x[1] + x[2]) / 8.0;
+        let squares = self.values.iter().flat_map(|values| values.windows(3)).map(|x| off(x).powi(2));
+        (squares.sum::<f64>() / rows).sqrt()
     }
 
     /// Norms of the signal itself.

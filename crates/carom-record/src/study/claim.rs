@@ -42,26 +42,43 @@ pub struct Verdict {
     pub ensemble: Option<Confirmed>,
 }
 
-/// Outcome of a claim over the members of an ensemble in which it can be decided.
+/// Outcome of a claim over the members of an ensemble.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confirmed {
     /// Number of members in which the claim holds.
     pub count: usize,
     /// Number of members in which the claim can be decided.
     pub of: usize,
+    /// Number of all members.
+    pub members: usize,
     /// The left quantity divided by the right one, without the constant factors of the sides.
     pub ratio: Option<Spread>,
 }
 
 impl Confirmed {
-    /// `in all`, `in most`, `in some` or `in none` of the members; most are three quarters.
+    /// `in all`, `in most`, `in some` or `in none` of the members; most are three quarters. What
+    /// cannot be decided in a member is not confirmed in it.
     pub fn word(&self) -> &'static str {
         match self.count {
-            count if count == self.of => "in all",
+            count if count == self.members => "in all",
             0 => "in none",
-            count if 4 * count >= 3 * self.of => "in most",
+            count if 4 * count >= 3 * self.members => "in most",
             _ => "in some",
         }
+    }
+
+    /// Whether the claim can be decided in every member.
+    pub fn is_decided(&self) -> bool {
+        self.of == self.members
+    }
+
+    /// `4 of 6`, with the number of members in which the claim cannot be decided.
+    pub fn words(&self) -> String {
+        let undecided = match self.members - self.of {
+            0 => String::new(),
+            count => format!(", {count} undecided"),
+        };
+        format!("{} of {}{undecided}", self.count, self.members)
     }
 }
 
@@ -98,6 +115,7 @@ impl Verdict {
                 .filter(|(l, r)| comparison.is_some_and(|c| c.operator.holds(*l, *r)))
                 .count(),
             of: decided.len(),
+            members: members.len(),
             ratio: Spread::of(decided.iter().copied().map(ratio)),
         };
         Self {
@@ -107,16 +125,18 @@ impl Verdict {
             holds: left.zip(right).zip(comparison).map(|((l, r), c)| c.operator.holds(l, r)),
             ratio: left.zip(right).map(ratio).filter(|ratio| ratio.is_finite()),
             bound,
-            ensemble: (decided.len() > 1).then(confirmed),
+            ensemble: (members.len() > 1 && !decided.is_empty()).then(confirmed),
         }
     }
 
     /// `confirmed`, `refuted` or `undecided`; over an ensemble that is not of one mind, `in most`
     /// or `in some` of its members.
     pub fn word(&self) -> &'static str {
-        match self.ensemble.as_ref().map(Confirmed::word) {
+        let ensemble = self.ensemble.as_ref();
+        match ensemble.map(Confirmed::word) {
             Some("in all") => return "confirmed",
-            Some("in none") => return "refuted",
+            Some("in none") if ensemble.is_some_and(Confirmed::is_decided) => return "refuted",
+            Some("in none") => return "undecided",
             Some(word) => return word,
             None => {}
         }

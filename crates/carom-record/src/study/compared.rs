@@ -4,8 +4,9 @@
 use super::arm::step;
 use super::groups::is_trajectory;
 use super::manifest::StudyManifest;
-use super::reference::{Reference, Trajectory};
+use super::reference::{Beside, Reference, Trajectory};
 use crate::Reason;
+use crate::facts::Facts;
 use crate::metrics::{self, Distance, phase_shift};
 use crate::order::from_errors;
 
@@ -42,11 +43,15 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Compares an arm with a reference; `contact` is the interval of the first contact of the
-    /// reference.
-    pub fn of(arm: &Trajectory, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
+    /// Compares an arm, which has these facts, with a reference; `contact` is the interval of the
+    /// first contact of the reference.
+    pub fn of(arm: &Trajectory, facts: &Facts, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
+        let Some(Beside { run: right, is_own }) = reference.beside(facts, &arm.times) else {
+            return Self::default();
+        };
+        let known = |column: &str| Some((&right.times[..], &right.columns.get(column)?[..]));
         let deviated = |(column, values): (&String, &Vec<f64>)| {
-            let known = reference.column(column)?;
+            let known = known(column)?;
             let within = |from: f64, to: f64| {
                 let rows = arm.times.partition_point(|t| *t < from)..arm.times.partition_point(|t| *t < to);
                 metrics::deviation(&arm.times[rows.clone()], &values[rows], known)
@@ -59,16 +64,16 @@ impl Compared {
         };
         let mut motions = arm.columns.iter().filter(|(column, _)| is_trajectory(column));
         let late = motions.find_map(|(column, values)| {
-            let late = phase_shift(&arm.times, values, reference.column(column)?)?;
+            let late = phase_shift(&arm.times, values, known(column)?)?;
             Some((column.clone(), late))
         });
-        let right = reference.finest();
         let groups = reference.known.iter().map(|known| {
+            let scale = if is_own { known.group.scale(&right)? } else { known.scale };
             let own = known.group.signal(arm)?;
-            let right = known.group.signal(right?)?;
+            let right = known.group.signal(&right)?;
             let far = |window: &f64| {
-                let distance = own.distance(&right, *window)?.relative_to(known.scale);
-                let errors = own.errors(&right, *window)?.into_iter().map(|x| x / known.scale);
+                let distance = own.distance(&right, *window)?.relative_to(scale);
+                let errors = own.errors(&right, *window)?.into_iter().map(|x| x / scale);
                 Some(Deviation { distance, errors: errors.collect() })
             };
             known.windows.iter().map(far).collect()

@@ -29,7 +29,7 @@ pub struct Group {
 }
 
 /// Whether a column is a displacement or the position of a centre.
-pub(super) fn is_trajectory(column: &str) -> bool {
+pub fn is_trajectory(column: &str) -> bool {
     column
         .rsplit('.')
         .next()

@@ -3,6 +3,7 @@
 
 use super::convergence::converged_by;
 use super::digits::short;
+use super::exact::Exact;
 use super::groups::{Group, Kind};
 use super::levels::Levels;
 use super::trajectory::Trajectory;
@@ -40,6 +41,8 @@ struct Apart {
     members: Distance,
     /// Largest distances of another scheme and of a longer step.
     checks: Distance,
+    /// Distance of motion between the rows of the finest run from the chords that stand for it.
+    interpolated: f64,
 }
 
 impl Apart {
@@ -58,7 +61,9 @@ impl Apart {
         let levels = levels.collect::<Option<Vec<Distance>>>()?;
         let last = runs.all.last()?;
         let members = farthest(last.members.get(1..)?)?.relative_to(1.0 / last.between_phases());
-        Some(Self { levels, members, checks: farthest(&runs.checks)? })
+        let is_interpolated = runs.is_interpolated && group.kind == Kind::Motion;
+        let interpolated = if is_interpolated { group.signal(finest)?.chords() } else { 0.0 };
+        Some(Self { levels, members, checks: farthest(&runs.checks)?, interpolated })
     }
 
     /// Uncertainty of the average.
@@ -67,7 +72,7 @@ impl Apart {
         let refined = converged_by(sizes, distances)?.uncertainty;
         let last = self.levels.last().filter(|_| kind != Kind::Motion);
         let least = last.map_or(0.0, |level| level.smooth);
-        Ok(self.checks.smooth.max(refined).max(least) + self.members.smooth)
+        Ok(self.checks.smooth.max(refined).max(least) + self.members.smooth + self.interpolated)
     }
 
     /// Uncertainty of the rough part, where that converges.
@@ -82,16 +87,23 @@ impl Known {
     /// A group of columns, its scale and its uncertainty; none if it is zero. `window`: the time to
     /// average over, or why there is none.
     pub(super) fn of(group: Group, runs: &Levels, window: &Result<f64, Reason>) -> Option<Self> {
-        let scale = group.scale(runs.finest()?)?;
+        let finest = runs.finest()?;
+        let not_compared = |group, why| {
+            let windows = Vec::new();
+            Some(Self { group, scale: 1.0, windows, uncertainty: Err(why), noise: None })
+        };
+        if runs.exact.is_some()
+            && let Some(why) = Exact::undefined(finest, &group.columns)
+        {
+            return not_compared(group, why);
+        }
+        let scale = group.scale(finest)?;
         let windows = match (group.kind, window) {
             (Kind::Motion, _) => vec![0.0],
             (_, Ok(window)) => vec![*window, window / 2.0, 2.0 * window],
-            (_, Err(why)) => {
-                let uncertainty = Err(why.clone());
-                return Some(Self { group, scale, windows: Vec::new(), uncertainty, noise: None });
-            }
+            (_, Err(why)) => return not_compared(group, why.clone()),
         };
-        if runs.exact {
+        if runs.exact.is_some() {
             let uncertainty = Ok(vec![0.0; windows.len()]);
             return Some(Self { group, scale, windows, uncertainty, noise: Some(0.0) });
         }

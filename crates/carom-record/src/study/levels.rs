@@ -1,5 +1,6 @@
 //! The runs of a reference: levels of refinement with their members, and checks.
 
+use super::exact::Exact;
 use super::trajectory::Trajectory;
 
 /// The runs of one level of refinement.
@@ -21,6 +22,13 @@ impl Level {
         Self { step, mesh: 1.0 / step, phases: 1, members: vec![run] }
     }
 
+    /// Number of steps from one row of its record to the next.
+    pub(super) fn steps_of_a_row(&self) -> f64 {
+        let times = self.members.first().map_or(&[][..], |run| &run.times);
+        let row = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        if self.step > 0.0 { (row / self.step).round().max(1.0) } else { 1.0 }
+    }
+
     /// Range of all phases relative to that of the members: n phases, 1/n of a step apart, cover
     /// (n − 1)/n of the range of a quantity that changes evenly with the phase.
     pub(super) fn between_phases(&self) -> f64 {
@@ -31,12 +39,14 @@ impl Level {
 /// The runs of a reference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Levels {
-    /// Levels of refinement, the finest last; for exact formulas, one level sampled from them.
+    /// Levels of refinement, the finest last; of exact formulas, two samplings.
     pub(super) all: Vec<Level>,
     /// Runs of another scheme and of twice the step on the finest mesh.
     pub(super) checks: Vec<Trajectory>,
-    /// Whether the values are those of formulas.
-    pub(super) exact: bool,
+    /// The formulas, of an exact reference.
+    pub(super) exact: Option<Exact>,
+    /// Whether arms have rows between those of the reference.
+    pub(super) is_interpolated: bool,
 }
 
 impl Levels {
@@ -52,6 +62,6 @@ impl Levels {
 
     /// Whether the error of the mesh is known: there is none, or the mesh was refined.
     pub(super) fn refines_mesh(&self) -> bool {
-        self.exact || self.all.windows(2).any(|pair| pair[1].mesh > pair[0].mesh)
+        self.exact.is_some() || self.all.windows(2).any(|pair| pair[1].mesh > pair[0].mesh)
     }
 }

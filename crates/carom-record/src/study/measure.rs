@@ -6,7 +6,7 @@ use super::groups::Kind;
 use super::manifest::StudyManifest;
 use super::reference::{Established, Known, Reference};
 use super::row::Row;
-use crate::Reason;
+use crate::{Reason, Status};
 
 /// The measure of a ranking.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,21 +37,21 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Errors {
-    /// Distance of two runs from each other.
+    /// Distance of two runs from each other; what sampling misses is bounded by their errors.
     pub fn distance(&self, other: &Self) -> f64 {
         let apart = product(&self.vector, &self.vector) + product(&other.vector, &other.vector)
             - 2.0 * product(&self.vector, &other.vector);
-        apart.max(0.0).sqrt()
+        let least = (self.error - other.error).abs();
+        apart.max(0.0).sqrt().clamp(least, self.error + other.error)
     }
 
     /// Whether every solution within the uncertainty of the reference is nearer to this run than to
     /// another one.
     pub fn is_nearer(&self, other: &Self, uncertainty: f64) -> bool {
-        let own = product(&self.vector, &self.vector);
-        let others = product(&other.vector, &other.vector);
         // Errors themselves are known up to round-off only.
-        let is_less = others.sqrt() - own.sqrt() > 2.0 * ROUND_OFF;
-        is_less && others - own > 2.0 * uncertainty * self.distance(other)
+        let is_less = other.error - self.error > 2.0 * ROUND_OFF;
+        let excess = other.error.powi(2) - self.error.powi(2);
+        is_less && excess > 2.0 * uncertainty * self.distance(other)
     }
 }
 
@@ -161,6 +161,18 @@ impl<'a> Ranks<'a> {
         }
     }
 
+    /// Why there is no reference: the study has none, or a run of it has not finished.
+    fn no_reference(&self) -> Reason {
+        let Some(name) = &self.manifest.reference else { return NO_REFERENCE.into() };
+        let arms = self.manifest.arms.iter().zip(self.rows);
+        let mut runs = arms.filter(|(arm, _)| arm.role.fine || arm.name == *name);
+        let stopped = runs.find_map(|(arm, row)| {
+            let why = row.reason.as_ref().filter(|_| row.status == Some(Status::Failed))?;
+            Some(format!("the run \"{}\" of the reference stopped ({why})", arm.name))
+        });
+        stopped.unwrap_or_else(|| "the reference has not finished".to_owned()).into()
+    }
+
     /// The errors of those metrics that the reference establishes, root mean square.
     fn of_metrics(&self, names: &[&str]) -> Result<Measured<'a>, Reason> {
         let mut known = Vec::new();
@@ -197,7 +209,7 @@ impl<'a> Ranks<'a> {
 
     /// The distance of groups of columns from the reference, relative to their scales.
     fn of_groups(&self, kind: Kind, window: usize) -> Result<Measured<'a>, Reason> {
-        let reference = self.reference.ok_or(NO_REFERENCE)?;
+        let reference = self.reference.ok_or_else(|| self.no_reference())?;
         let all = reference.known.iter().enumerate().filter(|(_, known)| known.group.kind == kind);
         let mut used: Vec<(usize, &Known)> = Vec::new();
         let mut left_out = Vec::new();
@@ -222,8 +234,9 @@ impl<'a> Ranks<'a> {
             let each: Vec<_> = each.collect::<Option<_>>()?;
             let count = (each.len() as f64).sqrt();
             let sampled = each.iter().flat_map(|deviation| &deviation.errors);
-            Some(Errors {
-                error: rms(each.iter().map(|deviation| deviation.distance.smooth)),
+            let error = rms(each.iter().map(|deviation| deviation.distance.smooth));
+            error.is_finite().then(|| Errors {
+                error,
                 vector: sampled.map(|x| x / count).collect(),
                 noise: (kind != Kind::Motion).then(|| rms(each.iter().map(|d| d.distance.rough))),
             })

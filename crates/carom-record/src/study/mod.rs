@@ -22,6 +22,7 @@ pub mod convergence;
 pub mod design;
 mod digits;
 pub mod ensemble;
+mod exact;
 #[doc(hidden)]
 pub mod groups;
 mod known;
@@ -41,6 +42,8 @@ mod reference_of;
 #[doc(hidden)]
 pub mod roles;
 mod row;
+#[doc(hidden)]
+pub mod systems;
 mod tables;
 #[doc(hidden)]
 pub mod trajectory;
@@ -64,6 +67,7 @@ pub use orders::{Refinement, Sought, refined_keys};
 use ranking::{Ranking, Ranks};
 use reference::{Established, Reference, Trajectory};
 pub use row::Row;
+use systems::Systems;
 
 /// A study that has been read.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,6 +97,8 @@ pub struct Study {
     pub other_rankings: Vec<Ranking>,
     /// Checks of one arm, which was computed two more times.
     pub checks: Option<Checks>,
+    /// The systems of units of the arms.
+    pub systems: Systems,
 }
 
 impl Study {
@@ -107,7 +113,8 @@ impl Study {
     }
 
     /// Reads a study arm by arm, with only one record in memory at a time. `visit` is called for
-    /// every arm that has a record. An arm whose record is damaged is a row with the reason.
+    /// every arm that has a record, in the units of the first arm. An arm whose record is damaged
+    /// is a row with the reason.
     ///
     /// # Errors
     /// Input/output or system error, or no study.
@@ -127,12 +134,13 @@ impl Study {
         });
         let mut rows = Vec::new();
         let mut compared = Vec::new();
+        let mut systems = Systems::of(&manifest);
         for (i, arm) in manifest.runs().enumerate() {
             let record = match manifest.record(directory, arm) {
                 Err(error) if !error.is_system() => Err(Row::damaged(arm, &error, directory)),
                 record => record?.ok_or_else(|| Row { name: arm.name.clone(), ..Row::default() }),
             };
-            let run = match record {
+            let mut run = match record {
                 Ok(run) => run,
                 Err(row) => {
                     rows.push(row);
@@ -140,12 +148,13 @@ impl Study {
                     continue;
                 }
             };
+            let mut row = Row::of(arm, &run, &manifest.overlays);
+            systems.convert(i, &mut run, &mut row);
             if i < manifest.arms.len() {
                 visit(i, &run);
             }
-            let row = Row::of(arm, &run, &manifest.overlays);
             let other = reference.as_ref().filter(|_| row.status == Some(Status::Finished));
-            compared.push(other.map(|r| Compared::of(&Trajectory::of(&run, &[]), r, contact)));
+            compared.push(other.map(|r| Compared::of(&Trajectory::of(&run, &[]), &arm.facts, r, contact)));
             let of_kind = |of: MemberOf| {
                 let kind = kinds.iter().position(|kind| *kind == of.member)?;
                 Some((kind, &manifest.arms[of.arm].name))
@@ -161,7 +170,7 @@ impl Study {
             .zip(&comparisons)
             .map(|(claim, c)| Verdict::of(claim, c.as_ref(), &records[0], &records));
         let judged = manifest.expects.iter().flat_map(|expect| match &expect.order {
-            Some(order) => orders::judge(expect, order, &manifest, &records[0]),
+            Some(order) => orders::judge(expect, order, &manifest, &records[0], reference.as_ref()),
             None => vec![expect.verdict(expect.got(&records[0]))],
         });
         let expectations = judged.collect();
@@ -194,6 +203,7 @@ impl Study {
             ranking,
             other_rankings,
             checks,
+            systems,
         })
     }
 

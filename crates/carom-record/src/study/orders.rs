@@ -1,7 +1,8 @@
 //! Groups of arms that differ only in one key, and their observed orders of convergence.
 //!
 //! ```text
-//! of a number   p from f₁ − f₂ and f₂ − f₃ of the three finest steps; with an exact value or a reference, from the errors of the two finest
+//! of a number   p from f₁ − f₂ and f₂ − f₃ of the three finest steps; with an exact value or a reference, from the errors of the two finest;
+//!               beside exact formulas the exact value is that of the same reduction of the formulas at the rows of each arm
 //! of a column   the same with e_k = ‖c_k − c_{k+1}‖ (rms over the rows whose times all three recorded), or e_k = ‖c_k − reference‖
 //! ```
 //!
@@ -10,12 +11,16 @@
 
 use std::collections::BTreeMap;
 
+use carom_formula::Formula;
+
+use super::alike::method;
 use super::arm::{Arm, step};
 use super::arms::{ArmRecords, Needs};
 use super::manifest::StudyManifest;
+use super::reference::Reference;
 use crate::Reason;
-use crate::order::{from_differences, from_errors};
-use crate::question::{self, Quantity, Question, Series};
+use crate::order::{ROUND_OFF, from_differences, from_errors};
+use crate::question::{self, Asked, Quantity, Question, Records, Rows, Series};
 use crate::{Deviation, Expect, Expectation, Expression, Norm, OrderOf};
 
 /// Arms that differ in one key, the coarsest first.
@@ -55,6 +60,7 @@ fn groups(
     value: fn(&Arm, &str) -> Option<f64>,
 ) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
+    let mut changes: Vec<Vec<&str>> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         let reference =
             if arm.role.fine { name.is_some() } else { manifest.reference.as_ref() == Some(&arm.name) };
@@ -65,14 +71,16 @@ fn groups(
         };
         let common =
             name.map_or_else(|| others(arm, key).map(str::to_owned).collect(), |name| vec![name.to_owned()]);
-        match groups.iter_mut().find(|g| g.common == common) {
-            Some(group) => {
-                let at = group.steps.partition_point(|s| *s > step);
-                group.steps.insert(at, step);
-                group.arms.insert(at, i);
-            }
-            None => groups.push(Refinement { common, arms: vec![i], steps: vec![step] }),
-        }
+        let own = if name.is_some() { Vec::new() } else { changes_beside(arm, key) };
+        let Some(known) = changes.iter().position(|known| *known == own) else {
+            changes.push(own);
+            groups.push(Refinement { common, arms: vec![i], steps: vec![step] });
+            continue;
+        };
+        let group = &mut groups[known];
+        let at = group.steps.partition_point(|s| *s > step);
+        group.steps.insert(at, step);
+        group.arms.insert(at, i);
     }
     groups.retain(|g| g.arms.len() > 1);
     groups
@@ -84,6 +92,52 @@ fn others<'a>(arm: &'a Arm, key: &str) -> impl Iterator<Item = &'a str> {
     let sets = arm.sets.iter().filter(is_other).map(String::as_str);
     arm.case_path.as_deref().into_iter().chain(sets)
 }
+
+/// The case of an arm, if it is not that of the study, and its changes of other keys in the order
+/// of keys, of several of one key the last: their order has no meaning.
+fn changes_beside<'a>(arm: &'a Arm, key: &str) -> Vec<&'a str> {
+    let name = |set: &str| set.split('=').next().unwrap_or_default().trim().to_owned();
+    let mut last: BTreeMap<String, &str> = BTreeMap::new();
+    for set in others(arm, key) {
+        last.insert(name(set), set);
+    }
+    last.into_values().collect()
+}
+
+/// Whether two arms differ in a key alone, or in nothing.
+pub(super) fn differ_in(key: &str, arm: &Arm, other: &Arm) -> bool {
+    let is_step = key == "time.step";
+    changes_beside(arm, key) == changes_beside(other, key)
+        || is_step && arm.case.is_object() && method(&arm.case) == method(&other.case)
+}
+
+/// The exact solution of an arm at the rows of its record.
+struct ExactOf<'a> {
+    arm: &'a Arm,
+    records: &'a ArmRecords,
+    reference: Option<&'a Reference>,
+}
+
+impl Records for ExactOf<'_> {
+    fn metric(&self, name: &str, _: Option<&str>) -> Result<f64, Reason> {
+        let none = || Reason::from(format!("`{name}` has no exact value: give it as `exact`"));
+        let known = self.reference.ok_or_else(none)?.estimate(name)?;
+        if known.uncertainty > EXACT * known.value.abs() { Err(none()) } else { Ok(known.value) }
+    }
+
+    fn column(&self, asked: &Asked) -> Result<Rows<'_>, Reason> {
+        let name = &asked.column;
+        let text = self.arm.facts.exact.get(name);
+        let text = text.ok_or_else(|| format!("the case has no [exact] formula for `{name}`"))?;
+        let formula = Formula::parse(text, &["t"]).map_err(|why| format!("`{text}`: {why}"))?;
+        let Rows { times, steps, .. } = self.records.column(asked)?;
+        let values: Vec<f64> = times.iter().map(|t| formula.value(&[*t])).collect();
+        Ok(Rows { times, steps, values: values.into() })
+    }
+}
+
+/// Relative uncertainty up to which a value is exact.
+const EXACT: f64 = 1e-9;
 
 /// A quantity that an expectation is about.
 pub enum Sought {
@@ -135,10 +189,9 @@ pub(super) fn judge(
     order: &OrderOf,
     manifest: &StudyManifest,
     records: &ArmRecords,
+    reference: Option<&Reference>,
 ) -> Vec<Expectation> {
-    let reference = manifest.reference.as_deref().filter(|name| *name != "exact");
-    let exact = manifest.reference.as_deref() == Some("exact");
-    let errors = exact || order.exact.is_some() || expect.deviation.is_some() || reference.is_some();
+    let errors = manifest.reference.is_some() || order.exact.is_some() || expect.deviation.is_some();
     let least = if errors { 2 } else { 3 };
     let groups = groups(manifest, &order.against, order.arms.as_deref(), step);
     let words = |group: &str| {
@@ -157,7 +210,7 @@ pub(super) fn judge(
         }];
     }
     let verdict = |group: &&Refinement| {
-        let got = observed(expect, order, group, manifest, records, reference);
+        let got = Observed { expect, order, manifest, records, reference }.of(group);
         Expectation { what: words(&group.common.join(", ")), ..expect.verdict(got) }
     };
     enough.iter().map(verdict).collect()
@@ -188,71 +241,146 @@ fn deviation(
     Ok(Some(Deviation { exact: Some(formula.clone()), ..deviation }))
 }
 
-fn observed(
-    expect: &Expect,
-    order: &OrderOf,
-    group: &Refinement,
-    manifest: &StudyManifest,
-    records: &ArmRecords,
-    reference: Option<&str>,
-) -> Result<f64, Reason> {
-    let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".into()) };
-    let [.., two, three] = group.arms[..] else { return Err("two arms are needed".into()) };
-    let name = |arm: usize| manifest.arms[arm].name.as_str();
-    let norm = expect.norm.unwrap_or(Norm::Rms);
-    let window = expect.window();
-    let quantity = order.quantity()?;
-    // Values of arms with their times; a number is one value without a time.
-    let of_arms = |arms: &[&str]| match &quantity {
-        Sought::Number(question) => {
-            let value = |arm: &&str| Ok(vec![question.of_arm(arm).answer(records, window)?]);
-            Ok((Vec::new(), arms.iter().map(value).collect::<Result<_, Reason>>()?))
+/// The two finest arms of a group.
+struct Finest {
+    steps: [f64; 2],
+    arms: [usize; 2],
+}
+
+impl Finest {
+    fn of(group: &Refinement) -> Result<Self, Reason> {
+        let [.., h1, h2] = group.steps[..] else { return Err("two steps are needed".into()) };
+        let [.., two, three] = group.arms[..] else { return Err("two arms are needed".into()) };
+        Ok(Self { steps: [h1, h2], arms: [two, three] })
+    }
+
+    /// The order from two errors of values of this size.
+    fn of_errors(&self, errors: [f64; 2], size: f64) -> Result<f64, Reason> {
+        if errors.iter().any(|error| error.abs() <= ROUND_OFF * size) {
+            return Err("the errors are round-off".into());
         }
-        Sought::Column(series) => {
-            let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(arm)).collect();
-            question::common(&columns, records, window)
-        }
-    };
-    let finest = || of_arms(&[name(two), name(three)]);
-    match &quantity {
-        Sought::Number(_) => {
-            if let Some(exact) = order.exact {
-                let (_, values) = finest()?;
-                return from_errors([h1, h2], [values[0][0] - exact, values[1][0] - exact]);
-            }
-        }
-        Sought::Column(series) => {
-            if let Some(deviation) = deviation(expect, manifest, three, series, norm)? {
-                let (times, columns) = finest()?;
-                let error = |column: usize| deviation.of(&times, &columns[column]);
-                return from_errors([h1, h2], [error(0)?, error(1)?]);
-            }
+        from_errors(self.steps, errors)
+    }
+}
+
+/// The order from two differences of values of this size at three steps.
+fn of_differences(steps: [f64; 3], differences: [f64; 2], size: f64) -> Result<f64, Reason> {
+    if differences.iter().any(|difference| difference.abs() <= ROUND_OFF * size) {
+        return Err("the differences are round-off".into());
+    }
+    from_differences(steps, differences)
+}
+
+/// Largest absolute value.
+fn size<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
+}
+
+/// What an expected order is computed from.
+struct Observed<'a> {
+    expect: &'a Expect,
+    order: &'a OrderOf,
+    manifest: &'a StudyManifest,
+    records: &'a ArmRecords,
+    /// The reference of the study, if it has finished.
+    reference: Option<&'a Reference>,
+}
+
+impl Observed<'_> {
+    fn of(&self, group: &Refinement) -> Result<f64, Reason> {
+        match &self.order.quantity()? {
+            Sought::Number(question) => self.of_number(question, group),
+            Sought::Column(series) => self.of_column(series, group),
         }
     }
-    let apart = |a: &[f64], b: &[f64]| {
-        let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
-        match quantity {
-            Sought::Number(_) => differences[0],
-            Sought::Column(_) => norm.of(&differences),
+
+    fn arm(&self, arm: usize) -> &Arm {
+        &self.manifest.arms[arm]
+    }
+
+    /// The arm that all are compared with; none beside an exact solution.
+    fn standing(&self) -> Option<&Arm> {
+        let name = self.manifest.reference.as_ref()?;
+        self.manifest.arms.iter().find(|arm| arm.name == *name)
+    }
+
+    fn of_number(&self, question: &Question, group: &Refinement) -> Result<f64, Reason> {
+        let window = self.expect.window();
+        let value = |arm: usize| question.of_arm(&self.arm(arm).name).answer(self.records, window);
+        let finest = Finest::of(group)?;
+        let [two, three] = finest.arms;
+        let values = [value(two)?, value(three)?];
+        let size = size(&values);
+        if let Some(exact) = self.order.exact {
+            return finest.of_errors(values.map(|value| value - exact), size);
         }
-    };
-    if let Some(reference) = reference {
-        let (_, values) = of_arms(&[name(two), name(three), reference])?;
-        let errors = [apart(&values[0], &values[2]), apart(&values[1], &values[2])];
-        // A reference that differs from the arms only in its step has an error of its own.
-        let key = order.against.as_str();
-        let arms = &manifest.arms;
-        let alike = |arm: &&Arm| [two, three].iter().all(|i| others(arm, key).eq(others(&arms[*i], key)));
-        let arm = arms.iter().find(|arm| arm.name == reference).filter(alike);
-        return match arm.and_then(|arm| step(arm, key)) {
-            Some(own) => from_differences([h1, h2, own], [errors[0] - errors[1], errors[1]]),
-            None => from_errors([h1, h2], errors),
+        if self.manifest.reference.as_deref() == Some("exact") {
+            let exact = |arm: usize| {
+                let arm = self.arm(arm);
+                let exact = ExactOf { arm, records: self.records, reference: self.reference };
+                question.of_arm(&arm.name).answer(&exact, window)
+            };
+            return finest.of_errors([values[0] - exact(two)?, values[1] - exact(three)?], size);
+        }
+        if let Some(reference) = self.standing() {
+            let right = question.of_arm(&reference.name).answer(self.records, window)?;
+            return self.beside(reference, &finest, values.map(|value| value - right), size);
+        }
+        let third = group.arms.len().checked_sub(3).ok_or("three steps are needed")?;
+        let coarse = value(group.arms[third])?;
+        let [h1, h2] = finest.steps;
+        of_differences([group.steps[third], h1, h2], [coarse - values[0], values[0] - values[1]], size)
+    }
+
+    fn of_column(&self, series: &Series, group: &Refinement) -> Result<f64, Reason> {
+        if self.order.exact.is_some() {
+            return Err(format!(
+                "`exact` is the exact value of a number, and `{}` is a column",
+                self.order.of
+            )
+            .into());
+        }
+        let norm = self.expect.norm.unwrap_or(Norm::Rms);
+        // Values of arms at the times of rows that all of them have.
+        let columns = |arms: &[&Arm]| {
+            let columns: Vec<Series> = arms.iter().map(|arm| series.of_arm(&arm.name)).collect();
+            question::common(&columns, self.records, self.expect.window())
         };
+        let apart = |a: &[f64], b: &[f64]| {
+            let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            norm.of(&differences)
+        };
+        let finest = Finest::of(group)?;
+        let [two, three] = finest.arms;
+        if let Some(deviation) = deviation(self.expect, self.manifest, three, series, norm)? {
+            let (times, values) = columns(&[self.arm(two), self.arm(three)])?;
+            let errors = [deviation.of(&times, &values[0])?, deviation.of(&times, &values[1])?];
+            return finest.of_errors(errors, size(values.iter().flatten()) / deviation.scale);
+        }
+        if let Some(reference) = self.standing() {
+            let (_, values) = columns(&[self.arm(two), self.arm(three), reference])?;
+            let errors = [apart(&values[0], &values[2]), apart(&values[1], &values[2])];
+            return self.beside(reference, &finest, errors, size(values.iter().flatten()));
+        }
+        let third = group.arms.len().checked_sub(3).ok_or("three steps are needed")?;
+        let coarse = self.arm(group.arms[third]);
+        let (_, values) = columns(&[coarse, self.arm(two), self.arm(three)])?;
+        let differences = [apart(&values[0], &values[1]), apart(&values[1], &values[2])];
+        let [h1, h2] = finest.steps;
+        of_differences([group.steps[third], h1, h2], differences, size(values.iter().flatten()))
     }
-    let first = group.steps.len().checked_sub(3).ok_or("three steps are needed")?;
-    let (_, values) = of_arms(&[name(group.arms[first]), name(two), name(three)])?;
-    let differences = [apart(&values[0], &values[1]), apart(&values[1], &values[2])];
-    from_differences([group.steps[first], h1, h2], differences)
+
+    /// The order from errors with respect to a run, which has an error of its own if it differs
+    /// from the arms in the same key alone.
+    fn beside(&self, reference: &Arm, finest: &Finest, errors: [f64; 2], size: f64) -> Result<f64, Reason> {
+        let key = self.order.against.as_str();
+        let is_alike = finest.arms.iter().all(|arm| differ_in(key, reference, self.arm(*arm)));
+        let [h1, h2] = finest.steps;
+        match step(reference, key).filter(|_| is_alike) {
+            Some(own) => of_differences([h1, h2, own], [errors[0] - errors[1], errors[1]], size),
+            None => finest.of_errors(errors, size),
+        }
+    }
 }
 
 /// Keys in which arms differ only by their values, with their groups of at least `least` arms;

@@ -6,10 +6,11 @@
 //!             refinement (convergence.rs) of a member, the median over the members, at least the distance to a
 //!             second scheme and the change of the last halving of the step on the same mesh; plus the largest
 //!             distance of a member from the median, plus for each event the step of the level before over the
-//!             number of phases, plus 5/4 of what averaging over a short time changes, for extremes
+//!             number of phases, or a row if it is longer, plus 5/4 of what averaging over a short time changes, for extremes
 //!             (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in step and refinement
-//! exact       the formulas of [exact], and the metrics that can be computed from these columns; uncertainty 0
+//! exact       the formulas of [exact] of each arm, uncertainty 0, and the metrics that can be computed from these
+//!             columns (exact.rs)
 //! ideal       zero: energy that time integrator or contact dissipates or creates, penetration; without friction
 //!             and plastic flow, changes of energy (measure.rs)
 //! ```
@@ -22,24 +23,23 @@
 //! uncertain by at least their distance from the next coarser mesh: two schemes on one mesh have
 //! the error of that mesh in common. Only established values are used for rankings.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-
-use carom_formula::Formula;
 
 use super::convergence::{converged, converged_by};
 use super::digits::short;
 use super::ensemble::Spread;
+use super::exact::Exact;
 use super::groups::groups;
 pub use super::known::Known;
 use super::known::{ONE_MESH, RESOLVED};
 pub use super::levels::Level;
 use super::levels::Levels;
-use super::trajectory::forces;
 pub use super::trajectory::{FORCE, Trajectory};
 use crate::Reason;
+use crate::facts::{ContactFacts, Facts};
 use crate::metrics::{self, Metric};
 use crate::order::SAFE;
-use crate::{Column, History};
 
 /// Metrics that are instants or differences of instants, and of how many events that a record
 /// resolves to one step.
@@ -50,6 +50,19 @@ const INSTANTS: [(&str, f64); 5] = [
     ("turning_time", 1.0),
     ("apex_time", 1.0),
 ];
+
+/// Number of events that determine a metric, each of which a record resolves to a row.
+fn events(name: &str) -> f64 {
+    INSTANTS.iter().find(|(instant, _)| *instant == name).map_or(0.0, |(_, events)| *events)
+}
+
+/// The reference beside a run.
+pub(super) struct Beside<'a> {
+    /// The run of the reference.
+    pub(super) run: Cow<'a, Trajectory>,
+    /// Whether it is an exact solution that other arms do not have.
+    pub(super) is_own: bool,
+}
 
 /// A value that a reference establishes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -83,6 +96,8 @@ pub struct Reference {
     pub averaged: Vec<Metric>,
     /// Groups of columns in which arms are compared.
     pub known: Vec<Known>,
+    /// Whether arms have other exact solutions than the first one.
+    pub(super) differs: bool,
     /// Uncertainties by column, which take the whole record to compute.
     uncertainties: BTreeMap<String, Result<f64, Reason>>,
 }
@@ -117,36 +132,23 @@ impl Reference {
         self.runs.finest()
     }
 
-    /// Creates an exact reference from formulas in t by column, sampled at `rows` + 1 times from 0
-    /// to `end`; none if a formula cannot be read.
-    pub fn of_formulas(formulas: &BTreeMap<String, String>, end: f64, rows: usize) -> Option<Self> {
-        let times: Vec<f64> = (0..=rows).map(|i| end * i as f64 / rows as f64).collect();
-        let mut columns = BTreeMap::new();
-        for (name, text) in formulas {
-            let formula = Formula::parse(text, &["t"]).ok()?;
-            columns.insert(name.clone(), times.iter().map(|t| formula.value(&[*t])).collect::<Vec<_>>());
-        }
-        let names = std::iter::once("time").chain(columns.keys().map(String::as_str));
-        let described = names.map(|name| Column {
-            name: name.into(),
-            unit: String::new(),
-            description: String::new(),
-            integer: false,
-        });
-        let values = std::iter::once(times.clone()).chain(columns.values().cloned());
-        let history = History::new(described.collect(), values.collect());
-        let mut known = metrics::all(&history);
-        for column in columns.keys() {
-            known.extend(metrics::of_columns(&history, column));
-        }
-        if history.column("contact_force_x").is_some() {
-            columns.insert(FORCE.to_owned(), metrics::total_force(&history));
-        }
-        let sampled = Trajectory { times, columns, forces: forces(&history), metrics: known };
-        let what = "the exact formulas of [exact]".to_owned();
-        let levels = vec![Level::single(1.0, sampled)];
-        let runs = Levels { all: levels, exact: true, ..Levels::default() };
-        Some(Self { what, runs, ..Self::default() })
+    /// Creates an exact reference from the formulas of a case with these contacts, in t up to
+    /// `end`.
+    pub fn of_formulas(formulas: &BTreeMap<String, String>, contacts: &[ContactFacts], end: f64) -> Self {
+        let exact = Exact::of(formulas, contacts, end);
+        let levels = exact.sampled().map(|run| Level::single(1.0, run)).into();
+        let runs = Levels { all: levels, exact: Some(exact), ..Levels::default() };
+        Self { what: "the exact formulas of [exact]".to_owned(), runs, ..Self::default() }
+    }
+
+    /// The reference beside a run with these times of rows: the finest run, or the exact solution
+    /// of an arm with these facts.
+    pub(super) fn beside(&self, facts: &Facts, rows: &[f64]) -> Option<Beside<'_>> {
+        let Some(exact) = &self.runs.exact else {
+            return Some(Beside { run: Cow::Borrowed(self.finest()?), is_own: false });
+        };
+        let own = Exact::of(&facts.exact, &facts.contacts, facts.end);
+        Some(Beside { is_own: !own.is_alike(exact), run: Cow::Owned(own.beside(rows)) })
     }
 
     /// Value of a metric with its uncertainty.
@@ -154,10 +156,17 @@ impl Reference {
     /// # Errors
     /// The reason why the reference has no such value.
     pub fn estimate(&self, name: &str) -> Result<Estimate, Reason> {
-        if self.runs.exact {
-            let value = self.finest().and_then(|run| run.value(name));
-            let value = value.ok_or("[exact] has no columns to compute it from")?;
-            return Ok(Estimate { value, uncertainty: 0.0, order: None, spread: 0.0 });
+        if self.differs {
+            return Err("the arms have different formulas in [exact]".into());
+        }
+        if let Some(exact) = &self.runs.exact {
+            let value = |level: &Level| level.members.first()?.value(name);
+            let values: Option<Vec<f64>> = self.runs.all.iter().map(value).collect();
+            let Some([coarse, value]) = values.as_deref() else {
+                return Err("[exact] has no columns to compute it from".into());
+            };
+            let uncertainty = (value - coarse).abs() + events(name) * exact.row();
+            return Ok(Estimate { value: *value, uncertainty, order: None, spread: 0.0 });
         }
         let of = |level: &Level| Spread::of(level.members.iter().filter_map(|run| run.value(name)));
         let levels: Option<Vec<Spread>> = self.runs.all.iter().map(of).collect();
@@ -178,18 +187,18 @@ impl Reference {
         Ok(Estimate { value, uncertainty, order: found.order, spread })
     }
 
-    /// Uncertainty of the detection of events, which are late by up to a step at each level: the
-    /// difference of two levels is known up to the longer one of their steps. n phases resolve an
-    /// event to 1/n of a step, and their median is late by half a step at every level, which
-    /// converges as the refinement does. Most phases may have the same duration, late by up to half
-    /// a step.
+    /// Uncertainty of the detection of events, which are late by up to a row at each level: the
+    /// difference of two levels is known up to the longer one of their rows. Where every step is a
+    /// row, n phases resolve an event to 1/n of a step, and their median is late by half a step at
+    /// every level, which converges as the refinement does. Most phases may have the same duration,
+    /// late by up to half a step.
     fn detected(&self, name: &str) -> f64 {
-        let events = INSTANTS.iter().find(|(instant, _)| *instant == name).map_or(0.0, |(_, events)| *events);
+        let events = events(name);
         let before = self.runs.all.len().saturating_sub(2);
         let Some(level) = self.runs.all.get(before) else { return 0.0 };
         let share = 1.0 / level.phases.max(1) as f64;
         let least = if events > 1.0 { 0.5 } else { 0.0 };
-        events * level.step * share.max(least)
+        events * level.step * (level.steps_of_a_row() - 1.0 + share.max(least))
     }
 
     /// Uncertainties of the refinement of each member alone; none where a member has no value at a
@@ -252,7 +261,7 @@ impl Reference {
     /// # Errors
     /// The reason why the reference does not establish the column.
     pub fn uncertainty(&self, column: &str) -> Result<f64, Reason> {
-        if self.runs.exact {
+        if self.runs.exact.is_some() {
             return Ok(0.0);
         }
         self.uncertainties.get(column).cloned().unwrap_or_else(|| self.of_column(column))

@@ -1,6 +1,6 @@
 //! The reference of a study, from the records of its runs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde_json::Value;
@@ -11,6 +11,9 @@ use super::reference::{Level, Reference};
 use super::trajectory::Trajectory;
 use crate::metrics;
 use crate::{Reason, RecordError, Run};
+
+/// Relative difference of two times that is round-off.
+const SAME: f64 = 1e-6;
 
 /// Impact law of the contact nodes, as a part of the description of a reference: while contact
 /// nodes have mass, the law belongs to the mathematical problem.
@@ -40,7 +43,7 @@ impl StudyManifest {
         let is_named = |arm: &&Arm| self.reference.as_ref() == Some(&arm.name);
         let Some(named) = self.arms.iter().find(is_named) else { return Vec::new() };
         let size = |arm: &Arm| step(arm, "time.step").unwrap_or_default();
-        let others = |arm: &Arm| -> Vec<String> {
+        let others = |arm: &Arm| -> BTreeSet<String> {
             arm.sets_without_step().filter(|set| !set.starts_with("refine=")).cloned().collect()
         };
         let is_level = |arm: &Arm| {
@@ -55,6 +58,21 @@ impl StudyManifest {
         found.sort_by(|a, b| size(&self.arms[*b]).total_cmp(&size(&self.arms[*a])));
         let most = if named.role.fine { found.len() } else { 3 };
         found.split_off(found.len().saturating_sub(most))
+    }
+
+    /// Whether arms have rows between those of a run of the reference.
+    fn interpolates(&self, finest: &Arm) -> bool {
+        let every = |arm: &Arm| {
+            let given = arm.case.get("output").and_then(|output| output.get("history_every"));
+            given.and_then(Value::as_f64).unwrap_or(1.0)
+        };
+        let row = |arm: &Arm| Some(every(arm) * step(arm, "time.step")?);
+        let is_between = |arm: &Arm| {
+            let rows = row(arm).zip(row(finest)).map(|(own, known)| own / known);
+            rows.is_none_or(|rows| (rows - rows.round()).abs() > SAME * rows)
+        };
+        let has_phases = self.ensemble.as_ref().is_some_and(|ensemble| ensemble.phases > 1);
+        has_phases || self.arms.iter().filter(|arm| !arm.role.fine).any(is_between)
     }
 
     /// The time to average over, if it is given; or else why there is none.
@@ -82,14 +100,10 @@ impl StudyManifest {
     pub(super) fn reference(&self, directory: &Path) -> Result<Option<Reference>, RecordError> {
         if self.reference.as_deref() == Some("exact") {
             let Some(facts) = self.arms.first().map(|arm| &arm.facts) else { return Ok(None) };
-            // A formula of the sum says nothing of contacts that do not count as one.
-            let mut formulas = facts.exact.clone();
-            formulas.retain(|name, _| {
-                metrics::count_as_one(&facts.contacts) || !name.starts_with("contact_force_")
-            });
-            let exact = Reference::of_formulas(&formulas, facts.end, 8000);
+            let mut exact = Reference::of_formulas(&facts.exact, &facts.contacts, facts.end);
+            exact.differs = self.arms.iter().any(|arm| arm.facts.exact != facts.exact);
             let window = self.window("[exact] needs `window`, the time to average over");
-            return Ok(exact.map(|exact| exact.grouped(&self.bodies_of_probes(), &window)));
+            return Ok(Some(exact.grouped(&self.bodies_of_probes(), &window)));
         }
         let mut window = self.window("the reference has no contact");
         let arms = self.reference_arms();
@@ -130,6 +144,7 @@ impl StudyManifest {
         }
         let mut reference = Reference::of_levels(String::new(), levels);
         reference.runs.checks = checks;
+        reference.runs.is_interpolated = self.interpolates(&self.arms[*last]);
         reference.averaged = averaged;
         let mut reference = reference.grouped(&self.bodies_of_probes(), &window);
         let count = match arms.len() {

@@ -83,7 +83,7 @@ impl Study {
                 v.right,
                 v.word(),
                 confirmed.map(|confirmed| confirmed.count),
-                confirmed.map(|confirmed| confirmed.of),
+                confirmed.map(|confirmed| confirmed.members),
                 ratio.map(Spread::median).or(v.ratio),
                 ratio.map(|ratio| ratio.range().0),
                 ratio.map(|ratio| ratio.range().1),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::facts::ContactFacts;
 use crate::metrics::{self, Metric};
 use crate::{History, Run};
 
@@ -13,7 +14,7 @@ pub struct Trajectory {
     /// Columns of probes and of centres of bodies, and [`FORCE`], the magnitude of the contact
     /// force.
     pub columns: BTreeMap<String, Vec<f64>>,
-    /// Components of the contact force by axis.
+    /// Components of the contact force by axis, or by contact and axis.
     pub forces: BTreeMap<String, Force>,
     /// Metrics of the run.
     pub metrics: Vec<Metric>,
@@ -24,7 +25,8 @@ pub struct Trajectory {
 pub struct Force {
     /// Values at the rows.
     pub values: Vec<f64>,
-    /// The impulse up to each row, which the time integrator accumulates.
+    /// The impulse up to each row: as the time integrator accumulates it, of each of several
+    /// contacts the integral of the values.
     pub impulse: Vec<f64>,
 }
 
@@ -39,14 +41,26 @@ fn center_of(column: &str) -> Option<&str> {
     quantity.starts_with("center_").then_some(body)
 }
 
-/// Components of the contact force that are recorded with their impulses.
-pub(super) fn forces(history: &History) -> BTreeMap<String, Force> {
-    let component = |axis: &&str| {
-        let values = history.column(&format!("contact_force_{axis}"))?.to_vec();
-        let impulse = history.column(&format!("contact_impulse_{axis}"))?.to_vec();
-        Some(((*axis).to_owned(), Force { values, impulse }))
+/// Components of the contact force with their impulses, which are recorded; of contacts that do not
+/// count as one those of each, as their sum depends on which sides are secondary.
+pub(super) fn forces(history: &History, contacts: &[ContactFacts]) -> BTreeMap<String, Force> {
+    if metrics::count_as_one(contacts) {
+        let component = |axis: &&str| {
+            let values = history.column(&format!("contact_force_{axis}"))?.to_vec();
+            let impulse = history.column(&format!("contact_impulse_{axis}"))?.to_vec();
+            Some(((*axis).to_owned(), Force { values, impulse }))
+        };
+        return AXES.iter().filter_map(component).collect();
+    }
+    let of_contact = |contact: &ContactFacts| {
+        let name = contact.name.clone();
+        AXES.iter().filter_map(move |axis| {
+            let values = history.column(&format!("{name}.force_{axis}"))?.to_vec();
+            let impulse = metrics::integral(history.times(), &values);
+            Some((format!("{name}.{axis}"), Force { values, impulse }))
+        })
     };
-    AXES.iter().filter_map(component).collect()
+    contacts.iter().flat_map(of_contact).collect()
 }
 
 impl Trajectory {
@@ -59,7 +73,8 @@ impl Trajectory {
         let columns = names.filter_map(|name| Some((name.to_owned(), history.column(name)?.to_vec())));
         let mut columns: BTreeMap<_, _> = columns.collect();
         columns.insert(FORCE.to_owned(), metrics::contact_force(run));
-        Self { times: history.times().to_vec(), columns, forces: forces(history), metrics: metrics.to_vec() }
+        let forces = forces(history, &run.manifest.facts.contacts);
+        Self { times: history.times().to_vec(), columns, forces, metrics: metrics.to_vec() }
     }
 
     /// Without the centres of all bodies but one.

@@ -51,10 +51,10 @@ pub(super) fn section(study: &Study) -> Markup {
     let all = study.manifest.ensemble.is_some();
     let confirmed = study.verdicts.iter().filter(|v| class(v) == "pass").count();
     let result = |v: &Verdict| match &v.ensemble {
-        Some(Confirmed { count: 0, of, .. }) => format!("refuted in all ({of} of {of})"),
-        Some(confirmed @ Confirmed { count: k, of, .. }) => {
-            format!("confirmed {} ({k} of {of})", confirmed.word())
+        Some(Confirmed { count: 0, of, members, .. }) if of == members => {
+            format!("refuted in all ({of} of {of})")
         }
+        Some(confirmed) => format!("confirmed {} ({})", confirmed.word(), confirmed.words()),
         None => v.word().to_owned(),
     };
     html! {

@@ -10,7 +10,6 @@ use carom_record::study::checks::fingerprint;
 use carom_record::study::reference::FORCE;
 use maud::{Markup, html};
 
-use super::systems::Systems;
 use crate::digits::five;
 use crate::labels::{is_stress, symbol, words};
 use crate::measured::measured_label;
@@ -107,25 +106,15 @@ impl Measured {
 }
 
 /// Adds the columns of an arm, measured ones included.
-pub(super) fn collect(
-    columns: &mut Vec<Column>,
-    measured: &Measured,
-    systems: &mut Systems,
-    arm: usize,
-    run: &Run,
-) {
-    let Some(times) = systems.of_times(arm, run) else { return };
+pub(super) fn collect(columns: &mut Vec<Column>, measured: &Measured, arm: usize, run: &Run) {
     let mut put = |name: &str, values: &[f64], unit: &str| {
-        let (mut x, mut y) = thinned(run.times(), values);
-        let known = columns.iter().position(|column| column.name == name);
-        let to = known.map_or(unit, |known| &columns[known].unit).to_owned();
-        let Some(factor) = systems.factor(arm, unit, &to) else { return };
-        x.iter_mut().for_each(|x| *x *= times);
-        y.iter_mut().for_each(|y| *y *= factor);
-        match known {
-            Some(known) => columns[known].curves.push((arm, x, y)),
-            None => columns.push(Column { name: name.to_owned(), unit: to, curves: vec![(arm, x, y)] }),
+        let (x, y) = thinned(run.times(), values);
+        let curve = (arm, x, y);
+        if let Some(column) = columns.iter_mut().find(|column| column.name == name) {
+            column.curves.push(curve);
+            return;
         }
+        columns.push(Column { name: name.to_owned(), unit: unit.to_owned(), curves: vec![curve] });
     };
     let force = contact_force(run);
     if force.iter().any(|f| *f > 0.0) {
@@ -170,7 +159,7 @@ pub(super) fn time_unit(study: &Study) -> &str {
 
 /// The unit of time of all arms; empty if they have several.
 pub(super) fn common_time(study: &Study) -> &str {
-    if Systems::of(&study.manifest).is_one() { time_unit(study) } else { "" }
+    if study.systems.is_one() { time_unit(study) } else { "" }
 }
 
 /// A time with its unit.

@@ -7,7 +7,6 @@ use maud::{Markup, html};
 
 use super::collected::cells_of;
 use super::comparison::style_of;
-use super::systems::Systems;
 use super::trend;
 use crate::digits::five;
 use crate::document::{file, labelled, minus};
@@ -131,7 +130,7 @@ pub(super) fn expectations(study: &Study) -> Markup {
 }
 
 /// All metrics of all arms, folded.
-pub(super) fn metrics(study: &Study, systems: &Systems) -> Markup {
+pub(super) fn metrics(study: &Study) -> Markup {
     let mut shown = study.metrics();
     shown.retain(|metric| study.rows.iter().any(|row| row.value(&metric.name).is_some()));
     html! {
@@ -142,7 +141,7 @@ pub(super) fn metrics(study: &Study, systems: &Systems) -> Markup {
             }))
             p.small {
                 "Headings are the numbers of the arms. "
-                @if !systems.is_one() { "Values are in the units of the first arm. " }
+                @if !study.systems.is_one() { "Values are in the units of the first arm. " }
                 "With all digits: " (file("study.csv")) "; with measured times: " (file("study_tidy.csv")) "."
             }
         }

@@ -5,7 +5,6 @@ use carom_record::study::{Row, Study};
 use maud::{Markup, html};
 
 use super::collected::Origin;
-use super::systems::Systems;
 use super::{claims, convergence, ensemble, numbers, ranked, reproduce, settings, trend, verdict, warnings};
 use crate::document::{figure, framed};
 use crate::figure::Figure;
@@ -18,7 +17,6 @@ pub(super) fn page(
     picture: Option<&Figure>,
     figures: &[(bool, Figure)],
     origins: &[Origin],
-    systems: &Systems,
 ) -> String {
     let sections = [
         ("verdict", "Recommendation", verdict::section(study)),
@@ -27,8 +25,8 @@ pub(super) fn page(
         ("ranking", "Ranking", ranked::section(study)),
         ("expectations", "Expectations", numbers::expectations(study)),
         ("warnings", "Warnings", warnings::section(study, origins)),
-        ("figures", "Figures", drawn(figures, systems)),
-        ("metrics", "Metrics", numbers::metrics(study, systems)),
+        ("figures", "Figures", drawn(study, figures)),
+        ("metrics", "Metrics", numbers::metrics(study)),
         ("trends", "Trends", trend::section(study)),
         ("convergence", "Convergence", convergence::section(study)),
         ("ensemble", "Ensemble", ensemble::section(study)),
@@ -80,10 +78,10 @@ fn status(study: &Study) -> Markup {
 }
 
 /// The figures; those that are folded away are together.
-fn drawn(figures: &[(bool, Figure)], systems: &Systems) -> Markup {
+fn drawn(study: &Study, figures: &[(bool, Figure)]) -> Markup {
     let (open, folded): (Vec<_>, Vec<_>) = figures.iter().enumerate().partition(|(_, (folded, _))| !folded);
     html! {
-        @if let Some(words) = systems.words() { p { (Prose(&words)) } }
+        @if let Some(words) = study.systems.words() { p { (Prose(&words)) } }
         @for (i, (_, one)) in open { (figure((i, one))) }
         @if !folded.is_empty() {
             details {

@@ -177,6 +177,12 @@ impl<'a> Sweep<'a> {
         }
     }
 
+    /// The key, or the inverse of a count, against which metrics are shown.
+    fn against(&self) -> String {
+        let inverse = said_if(count(&self.key).is_some(), "1/");
+        format!("{inverse}{}", self.key)
+    }
+
     /// The label of the key with its unit: its last part, and its inverse for a count.
     fn axis(&self) -> String {
         match self.key.rsplit_once('.').map_or(self.key.as_str(), |(_, last)| last) {
@@ -241,7 +247,7 @@ impl<'a> Sweep<'a> {
         let only = only(study, &self.groups).map_or_else(String::new, |arms| format!(" Arms: {arms}."));
         Some(Plot {
             name: format!("trend-{}", file_name(&self.key)),
-            caption: format!("{which} against `{}`.{only}{lines}{grey}{left_out}", self.key),
+            caption: format!("{which} against `{}`.{only}{lines}{grey}{left_out}", self.against()),
             x_label: self.axis(),
             log: [wide, false],
             across: 3,
@@ -288,7 +294,7 @@ pub(super) fn section(study: &Study) -> Markup {
         @if !sweeps.is_empty() {
             @for sweep in &sweeps {
                 details {
-                    summary { "Slopes and exponents in " code { (sweep.key) } }
+                    summary { "Slopes and exponents in " code { (sweep.against()) } }
                     table.metrics {
                         thead { tr { th { "Metric" } th { "Unit" } th { "Arms" } th { "Slope or exponent" } } }
                         @for (metric, trends) in &sweep.metrics {
@@ -304,7 +310,7 @@ pub(super) fn section(study: &Study) -> Markup {
                 }
             }
             p.small {
-                "Exponent: of the power of the key, where metric and key are positive and span a factor of three in all \
+                "Exponent: of the power of the key, or of the inverse of a count, where metric and key are positive and span a factor of three in all \
                  groups of arms; slope: of a straight line. With the 95 % interval of least squares."
             }
         }
@@ -314,6 +320,7 @@ pub(super) fn section(study: &Study) -> Markup {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use carom_record::study::systems::Systems;
     use carom_record::study::{Arm, Row, StudyManifest, StudySource};
     use carom_record::{Machine, Status};
 
@@ -361,6 +368,7 @@ pub(crate) mod tests {
             warnings: Vec::new(),
         });
         Study {
+            systems: Systems::default(),
             directory: std::path::PathBuf::new(),
             rows: rows.collect(),
             manifest,

@@ -9,3 +9,4 @@ mod coverage;
 mod distributed;
 mod expectations;
 mod study;
+mod truth;

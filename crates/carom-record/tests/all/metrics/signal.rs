@@ -71,3 +71,11 @@ fn the_same_jump_is_no_noise() {
     let found = one.distance(&Signal::of(&fine, vec![&known]), 1.0 / 32.0).unwrap();
     assert!(found.rough < 0.02 && found.smooth < 5e-3, "{found:?}");
 }
+
+/// A parabola t² is above its chords of the length 1/100 by (1/100)²/4 at most.
+#[test]
+fn chords_of_a_parabola() {
+    let (times, values) = sampled(100, |t| t * t);
+    let found = Signal::of(&times, vec![&values]).chords();
+    assert!((found / 2.5e-5 - 1.0).abs() < 1e-6, "{found}");
+}

@@ -65,6 +65,24 @@ fn held_in_k_of_n() {
     assert_eq!((ratio.median(), ratio.range()), (1.5, (0.5, 2.0)));
 }
 
+/// A member in which an arm has no such metric does not confirm the claim.
+#[test]
+fn what_cannot_be_decided_is_not_confirmed() {
+    let members = [Some(2.0), Some(3.0), None].map(|left| {
+        let mut records = ArmRecords::default();
+        left.into_iter().for_each(|left| records.put_metric("a", "r", left));
+        records
+    });
+    let word = |compare: &str| {
+        let claim = Claim { text: String::new(), compare: compare.into() };
+        let comparison = Comparison::parse(compare).unwrap();
+        let verdict = Verdict::of(&claim, Some(&comparison), &members[0], &members);
+        (verdict.word(), verdict.ensemble.unwrap().words())
+    };
+    assert_eq!(word("r of 'a' > 1"), ("in some", "2 of 3, 1 undecided".to_owned()));
+    assert_eq!(word("r of 'a' > 9"), ("undecided", "0 of 3, 1 undecided".to_owned()));
+}
+
 #[test]
 fn errors_say_what_is_wrong() {
     let wrong = |text: &str| Comparison::parse(text).unwrap_err();

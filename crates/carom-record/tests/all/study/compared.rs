@@ -1,6 +1,7 @@
 //! Comparison of an arm with the reference: deviations of columns, over all rows and in the smooth
 //! phases before and after the first contact, and its delay.
 
+use carom_record::Facts;
 use carom_record::study::compared::{Compared, phase_orders};
 use carom_record::study::reference::{Level, Reference, Trajectory};
 
@@ -17,7 +18,12 @@ fn orders_of_the_phases() {
     let levels = [4.0, 2.0, 1.0].map(|step| Level::single(step, exact()));
     let reference = Reference::of_levels("r".into(), levels.into());
     let arm = |h: f64| {
-        Compared::of(&sampled(32, |t| t + if t < 0.5 { h * h } else { h }), &reference, Some((0.5, 0.5)))
+        Compared::of(
+            &sampled(32, |t| t + if t < 0.5 { h * h } else { h }),
+            &Facts::default(),
+            &reference,
+            Some((0.5, 0.5)),
+        )
     };
     let coarse = arm(0.1);
     let fine = arm(0.05);

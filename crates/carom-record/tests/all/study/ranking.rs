@@ -257,6 +257,16 @@ fn errors_in_common_do_not_hide_a_difference() {
     );
 }
 
+/// What no sample has seen: errors of 0.06 and 0.21 beside an exact reference are not the same.
+#[test]
+fn places_follow_from_errors_that_samples_miss() {
+    let unseen = |error: f64| Errors { error, vector: vec![0.0; 8], noise: None };
+    assert!(unseen(0.06).is_nearer(&unseen(0.21), 0.0) && !unseen(0.21).is_nearer(&unseen(0.06), 0.0));
+    // Disjoint intervals: 0.06 ± 0.07 and 0.21 ± 0.07.
+    assert!(unseen(0.06).is_nearer(&unseen(0.21), 0.07));
+    assert!((unseen(0.06).distance(&unseen(0.21)) - 0.15).abs() < 1e-12);
+}
+
 /// Arms that created energy, stopped or penetrated are not ranked, and the reason is known.
 #[test]
 fn unsound_arms_are_set_apart() {

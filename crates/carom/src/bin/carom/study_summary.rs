@@ -43,7 +43,7 @@ pub(crate) fn print(outcome: &Outcome, directory: &Path, page: bool) -> Result<(
     let study = &outcome.study;
     let claim = |v: &Verdict| {
         let ensemble =
-            v.ensemble.as_ref().map(|confirmed| json!({ "held": confirmed.count, "of": confirmed.of }));
+            v.ensemble.as_ref().map(|confirmed| json!({ "held": confirmed.count, "of": confirmed.members }));
         json!({ "claim": v.claim.text, "left": v.left, "right": v.right, "verdict": v.word(), "ensemble": ensemble })
     };
     out::event(&json!({
@@ -141,10 +141,10 @@ fn metrics(study: &Study) -> Vec<String> {
 }
 
 fn claim(v: &Verdict) -> String {
-    let word = v.ensemble.as_ref().map_or_else(
-        || format!("{:9}", v.word()),
-        |confirmed| format!("confirmed in {} of {}", confirmed.count, confirmed.of),
-    );
+    let word = v
+        .ensemble
+        .as_ref()
+        .map_or_else(|| format!("{:9}", v.word()), |confirmed| format!("confirmed in {}", confirmed.words()));
     let bound =
         v.bound.map_or_else(String::new, |(sign, bound)| format!(", claimed {sign} {}", short(bound)));
     let ratio = v.ensemble.as_ref().and_then(|confirmed| confirmed.ratio.as_ref()).map_or_else(

@@ -1,0 +1,119 @@
+//! The exact solution of an arm, from the formulas of [exact].
+//!
+//! ```text
+//! histories    formulas at the rows of the run that is compared, and at PARTS instants between any two of them
+//! metrics      of formulas at ROWS even instants; uncertain by what half of them change, and events by a row
+//! ```
+//!
+//! Nothing is interpolated at the rows of a run; between them forces and stresses are, for their
+//! averages.
+
+use std::collections::BTreeMap;
+
+use carom_formula::Formula;
+
+use super::trajectory::{FORCE, Trajectory, forces};
+use crate::facts::ContactFacts;
+use crate::metrics;
+use crate::{Column, History, Reason};
+
+/// Parts of a row in which formulas are evaluated.
+const PARTS: usize = 8;
+/// Number of even instants of the histories of which metrics are computed.
+const ROWS: usize = 16_384;
+
+/// Formulas of an exact solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Exact {
+    texts: BTreeMap<String, String>,
+    contacts: Vec<ContactFacts>,
+    /// Time at which the solution ends.
+    pub(super) end: f64,
+}
+
+impl Exact {
+    /// The formulas of a case, in t; that of the sum of all contact forces says nothing of contacts
+    /// that do not count as one.
+    pub(super) fn of(texts: &BTreeMap<String, String>, contacts: &[ContactFacts], end: f64) -> Self {
+        let mut texts = texts.clone();
+        texts.retain(|name, _| metrics::count_as_one(contacts) || !name.starts_with("contact_force_"));
+        Self { texts, contacts: contacts.to_vec(), end }
+    }
+
+    /// Distance of the instants of which metrics are computed.
+    pub(super) fn row(&self) -> f64 {
+        self.end / ROWS as f64
+    }
+
+    /// The histories of the formulas at these times.
+    fn history(&self, times: Vec<f64>) -> History {
+        let read = |(name, text): (&String, &String)| {
+            let formula = Formula::parse(text, &["t"]).ok()?;
+            Some((name.clone(), times.iter().map(|t| formula.value(&[*t])).collect::<Vec<f64>>()))
+        };
+        let read: Vec<(String, Vec<f64>)> = self.texts.iter().filter_map(read).collect();
+        let names = std::iter::once("time").chain(read.iter().map(|(name, _)| name.as_str()));
+        let columns = names.map(|name| Column {
+            name: name.into(),
+            unit: String::new(),
+            description: String::new(),
+            integer: false,
+        });
+        let columns = columns.collect();
+        let values = std::iter::once(times).chain(read.into_iter().map(|(_, values)| values));
+        History::new(columns, values.collect())
+    }
+
+    fn trajectory(&self, history: &History) -> Trajectory {
+        let names = history.columns.iter().map(|column| column.name.as_str()).filter(|name| *name != "time");
+        let columns = names.filter_map(|name| Some((name.to_owned(), history.column(name)?.to_vec())));
+        let mut columns: BTreeMap<String, Vec<f64>> = columns.collect();
+        if history.column("contact_force_x").is_some() {
+            columns.insert(FORCE.to_owned(), metrics::total_force(history));
+        }
+        let forces = forces(history, &self.contacts);
+        Trajectory { times: history.times().to_vec(), columns, forces, metrics: Vec::new() }
+    }
+
+    /// The solution with its metrics at two numbers of even instants, the larger one last.
+    pub(super) fn sampled(&self) -> [Trajectory; 2] {
+        [ROWS / 2, ROWS].map(|rows| {
+            let history = self.history((0..=rows).map(|i| self.end * i as f64 / rows as f64).collect());
+            let mut known = metrics::all(&history);
+            for column in self.texts.keys() {
+                known.extend(metrics::of_column(&history, column));
+            }
+            Trajectory { metrics: known, ..self.trajectory(&history) }
+        })
+    }
+
+    /// The solution beside a run with these times of rows.
+    pub(super) fn beside(&self, rows: &[f64]) -> Trajectory {
+        let parts = PARTS as f64;
+        let within = |pair: &[f64]| {
+            let [from, to] = [pair[0], pair[1]];
+            (0..PARTS).map(move |k| if k == 0 { from } else { from + k as f64 / parts * (to - from) })
+        };
+        let mut times: Vec<f64> = rows.windows(2).flat_map(within).chain(rows.last().copied()).collect();
+        times.dedup();
+        self.trajectory(&self.history(times))
+    }
+
+    /// Whether two solutions have the same formulas.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        self.texts == other.texts
+    }
+
+    /// The first instant of a sampled solution at which one of these columns, or components of the
+    /// contact force, is not a number.
+    pub(super) fn undefined(sampled: &Trajectory, columns: &[String]) -> Option<Reason> {
+        columns.iter().find_map(|column| {
+            let force = sampled.forces.get(column).map(|force| &force.values);
+            let values = sampled.columns.get(column).or(force)?;
+            let row = values.iter().position(|value| !value.is_finite())?;
+            let what = if force.is_some() { "the contact force along " } else { "" };
+            let [value, time] = [values[row], sampled.times[row]];
+            Some(format!("the formula of {what}`{column}` in [exact] is {value} at t = {time:.6}").into())
+        })
+    }
+}
