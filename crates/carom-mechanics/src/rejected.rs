@@ -116,7 +116,7 @@ pub enum Rejected {
     Linear(#[from] LinearError),
     /// An active constraint cannot be satisfied: its row has no independent free dofs.
     #[error(
-        "contact \"{contact}\": node {node} penetrates by {depth:.3e} [length], and supports prevent it from moving out"
+        "contact \"{contact}\": node {node} penetrates by {depth:.3e} [length], and supports, ties or other contacts prevent it from moving out"
     )]
     Overconstrained {
         /// Contact.

@@ -14,6 +14,7 @@ use carom_contact::{
 use crate::contact::independent::SAME;
 use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::slip_derivatives::SlipDerivatives;
+use crate::model::Contact;
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
@@ -376,9 +377,17 @@ fn is_covered(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, us
     let model = equations.model;
     let row = evaluation.rows[k].row(p);
     let acts = row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
-    let size = extent(row.nodes, &evaluation.y, model.dimension);
+    let size = size_at(&model.contacts[k], row.nodes, &evaluation.y, model.dimension);
     let is_closed = evaluation.answers[k][p].open.abs() <= model.gap_tolerance + SAME * size;
     acts && is_closed && model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p])
+}
+
+/// Size of the facets of a contact at the nodes of a row; of a node beside a rigid obstacle they
+/// are those of its own side.
+fn size_at(contact: &Contact, nodes: &[usize], y: &[f64], d: usize) -> f64 {
+    let facets = contact.facets.iter().flat_map(|(_, facets)| facets);
+    let beside = facets.filter(|facet| nodes.iter().any(|node| facet.contains(node)));
+    beside.map(|facet| extent(facet, y, d)).fold(extent(nodes, y, d), f64::max)
 }
 
 /// Largest distance between nodes.

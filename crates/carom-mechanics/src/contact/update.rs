@@ -137,13 +137,15 @@ impl<'a> ContactUpdate<'a> {
         changed
     }
 
-    /// Reports an active constraint without a row: supports prevent it from being satisfied.
+    /// Reports an active constraint without a row: others prevent it from being satisfied. A field
+    /// of pressure presses for those beside it.
     pub(crate) fn check_satisfiable(&self, now: &Evaluation) -> Result<(), Rejected> {
         let model = self.equations.model;
         let rows = Constraints::of(self.equations, now);
         let gaps: BTreeSet<_> =
             rows.list.iter().filter(|row| row.slip.is_none()).map(|row| row.place).collect();
-        for (k, p) in now.pressing().filter(|place| !gaps.contains(place)) {
+        let is_held = |place: &(usize, usize)| gaps.contains(place) || rows.covered.contains(place);
+        for (k, p) in now.pressing().filter(|place| !is_held(place)) {
             let contact = &model.contacts[k];
             let depth = -now.rows[k].row(p).gap;
             if contact.interface.is_constraint() && depth > model.gap_tolerance {
