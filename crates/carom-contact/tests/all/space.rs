@@ -404,3 +404,30 @@ fn the_derivative_of_the_discrete_gradient_agrees_with_differences() {
         }
     }
 }
+
+/// A node 0.03 beside the sharp edge of a face, below which its own facet leans by 40° and nearly
+/// contains the edge: the edge is kept out of that facet instead, but not while the node presses.
+#[test]
+fn a_node_that_presses_is_not_left_to_an_edge() {
+    // The face z = 0, seen from below, and the side x = 0.
+    let mut y = vec![0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0];
+    y.extend([0.0, 1.0, 1.0, 0.0, 0.0, 1.0]);
+    let face = vec![0, 1, 2, 3];
+    let side = vec![0, 5, 4, 1];
+    // The node, and the rest of its facet.
+    let (s, c) = 40.0_f64.to_radians().sin_cos();
+    y.extend([0.03, 0.5, 0.0, 0.03, 1.5, 0.0, 0.03 - c, 1.5, s, 0.03 - c, 0.5, s]);
+    let own = Boundary::new(FacetShape::Q4, &[vec![6, 7, 8, 9]], &[], 0);
+    let primary = Boundary::new(FacetShape::Q4, &[face, side], &[], 0);
+    assert!(primary.patch(0).at(&y, [0.0; 2]).normal[2] < -0.99);
+    assert!(own.patch(0).at(&y, [0.0; 2]).normal[2] > 0.7);
+    let contact = NodeToPatch::new(vec![6], primary).of_body(own);
+    let kept = |active: bool| {
+        let mut pair = Pair { active, ..Pair::open(0, 0, 0.0) };
+        contact.measure(&mut pair, &y, &mut Rows::new(3)).unwrap();
+        let mut pairing = Pairing::new(vec![pair]);
+        contact.search(&y, &y, &mut pairing, &mut Vec::new());
+        pairing.pairs.len()
+    };
+    assert_eq!([kept(false), kept(true)], [0, 1]);
+}

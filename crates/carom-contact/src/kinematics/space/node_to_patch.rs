@@ -316,7 +316,7 @@ impl NodeToPatch {
         };
         let next = |pair: &Pair, came_from| {
             let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
-            if self.is_left_to_edge(self.secondary[pair.node], at, before) {
+            if !pair.active && self.is_left_to_edge(self.secondary[pair.node], at, before) {
                 return Next::Leave;
             }
             self.next_facet(pair, came_from, now)
