@@ -1,6 +1,6 @@
 //! Unit labels: those of derived quantities, from the case's labels of length, time and mass, and
 //! factors between two labels, `lb in/s^2` and `N`, for comparing records in different systems of
-//! units. The values of a record are never converted.
+//! units. The values of a record are converted only beside others, in a study.
 //!
 //! Where a derived unit is a multiple of newton, pascal or joule with a prefix of steps of 1000, it
 //! has that name: with mm, ms and g forces are in N, stresses in MPa and energies in mJ. Otherwise

@@ -11,6 +11,9 @@ use crate::resolved::Planned;
 /// Adds the problems of a study with a goal; `planned` are the arms and the runs of
 /// the computed reference.
 pub(crate) fn check(file: &StudyFile, planned: &[Planned], problems: &mut Vec<Problem>) {
+    if file.reference.is_some() {
+        units(planned, problems);
+    }
     if file.goal.is_none() {
         return;
     }
@@ -21,6 +24,19 @@ pub(crate) fn check(file: &StudyFile, planned: &[Planned], problems: &mut Vec<Pr
         let why = "`reference = \"exact\"` compares with the formulas of [exact] in the case";
         let help = "add [exact] to the case, or write `reference = \"fine\"`";
         problems.push(Problem::new("reference", "the case has no exact solution", why, help));
+    }
+}
+
+/// A reference, and exact formulas, are in one system of units.
+fn units(planned: &[Planned], problems: &mut Vec<Problem>) {
+    let system = |arm: &Planned| {
+        [&arm.case.units.length, &arm.case.units.time, &arm.case.units.mass].map(Clone::clone)
+    };
+    let Some(first) = planned.first() else { return };
+    if let Some(other) = planned.iter().find(|arm| system(arm) != system(first)) {
+        let what = format!("\"{}\" has other units than \"{}\"", other.draft.name, first.draft.name);
+        let why = "the arms of a study with a reference are compared with it in its units";
+        problems.push(Problem::new("reference", what, why, "give all of them the same [units]"));
     }
 }
 

@@ -1,8 +1,11 @@
 //! Checks that the records of a study will contain what its goal compares.
 
+use std::collections::BTreeSet;
+
+use carom_record::body_of;
 use carom_record::study::design::Goal;
 use carom_record::study::groups::{is_stress, is_trajectory};
-use carom_run::case::{Case, Problem, history_columns};
+use carom_run::case::{Case, ContactSpec, Problem, history_columns};
 
 use crate::file::StudyFile;
 use crate::resolved::Planned;
@@ -37,6 +40,15 @@ fn compared(goal: Goal) -> Option<Compared> {
     }
 }
 
+/// Whether the forces of all contacts are those on one party: there is one contact, or one body meets
+/// rigid obstacles.
+fn counts_as_one(case: &Case) -> bool {
+    let body = |contact: &ContactSpec| body_of(&contact.secondary).to_owned();
+    let bodies: BTreeSet<String> = case.contacts.iter().map(body).collect();
+    let is_obstacle = |contact: &ContactSpec| contact.primary.side().is_none();
+    case.contacts.len() < 2 || bodies.len() == 1 && case.contacts.iter().all(is_obstacle)
+}
+
 /// Adds the problem that an arm, or the exact solution, has nothing that the goal compares.
 pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Problem>) {
     let Some(goal) = file.goal else { return };
@@ -61,10 +73,22 @@ pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Probl
     }
     let is_exact = file.reference.as_deref() == Some("exact") && goal != Goal::Friction;
     let Some(Planned { case, .. }) = arms.first().filter(|_| is_exact) else { return };
-    if !case.exact.keys().any(|column| is_column(column)) {
+    // The sum over several contacts would depend on which sides are secondary.
+    let has_sum = goal != Goal::Force || counts_as_one(case);
+    let of_contact = |column: &str| {
+        let names = case.contacts.iter().map(|contact| contact.name.as_str());
+        names.filter_map(|name| column.strip_prefix(name)).any(|rest| rest.starts_with(".force_"))
+    };
+    let is_compared = |column: &String| if has_sum { is_column(column) } else { of_contact(column) };
+    if !case.exact.keys().any(is_compared) {
         let what = format!("the exact solution has nothing that the goal `{}` compares", goal.word());
         let help = "add a formula for it to [exact] of the case, or write `reference = \"fine\"`";
-        problems.push(Problem::new("reference", what, "[exact] has no such column", help));
+        let why = if has_sum {
+            "[exact] has no such column"
+        } else {
+            "[exact] has no force of one of the contacts, such as CONTACT.force_x"
+        };
+        problems.push(Problem::new("reference", what, why, help));
         return;
     }
     if file.window.is_none() {
@@ -72,6 +96,9 @@ pub(crate) fn check(file: &StudyFile, arms: &[Planned], problems: &mut Vec<Probl
         let why = "forces and stresses are compared after averaging, and formulas have no contact interval to \
                    take the time from";
         problems.push(Problem::new("reference", what, why, "write for example `window = 0.01`"));
+    }
+    if !has_sum {
+        return;
     }
     let has = |name: &str, axis: &str| case.exact.contains_key(&format!("contact_{name}_{axis}"));
     let unpaired = ["x", "y", "z"].into_iter().find(|axis| has("force", axis) != has("impulse", axis));

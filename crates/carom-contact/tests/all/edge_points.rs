@@ -1,6 +1,8 @@
 //! Points of sharp edges against facets: derivatives of the gap against differences, balance of
 //! force and moment, and when a point is held.
 
+use std::collections::BTreeSet;
+
 use carom_algebra::{Vector, jacobian_error};
 use carom_contact::{Boundary, EdgePoints, Kinematics, Pair, Pairing, Rows};
 use carom_solid::FacetShape;
@@ -37,7 +39,7 @@ fn scene(shape: FacetShape, height: f64, bend: impl Fn([f64; 3]) -> [f64; 3]) ->
     }
     let upper = Boundary::new(shape, &slopes, &[], 0);
     let facet = Boundary::new(shape, &[lower], &[], 0);
-    (EdgePoints::new(&upper, facet, DEPTH, &y), y)
+    (EdgePoints::new(&upper, facet, DEPTH, &BTreeSet::new(), &y).unwrap(), y)
 }
 
 fn straight(x: [f64; 3]) -> [f64; 3] {

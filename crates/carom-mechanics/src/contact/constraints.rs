@@ -382,12 +382,13 @@ fn is_covered(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, us
     acts && is_closed && model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p])
 }
 
-/// Size of the facets of a contact at the nodes of a row; of a node beside a rigid obstacle they
-/// are those of its own side.
+/// Size of the facet of a row; of a node alone, beside a rigid obstacle, that of the facets of its
+/// own side.
 fn size_at(contact: &Contact, nodes: &[usize], y: &[f64], d: usize) -> f64 {
+    let [node] = nodes else { return extent(nodes, y, d) };
     let facets = contact.facets.iter().flat_map(|(_, facets)| facets);
-    let beside = facets.filter(|facet| nodes.iter().any(|node| facet.contains(node)));
-    beside.map(|facet| extent(facet, y, d)).fold(extent(nodes, y, d), f64::max)
+    let beside = facets.filter(|facet| facet.contains(node));
+    beside.map(|facet| extent(facet, y, d)).fold(0.0, f64::max)
 }
 
 /// Largest distance between nodes.

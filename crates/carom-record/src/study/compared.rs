@@ -2,6 +2,7 @@
 //! after the first contact, and its delay.
 
 use super::arm::step;
+use super::exact::Exact;
 use super::groups::is_trajectory;
 use super::manifest::StudyManifest;
 use super::reference::{Beside, Reference, Trajectory};
@@ -38,6 +39,8 @@ pub struct Compared {
     /// Errors in the groups of the reference, in their order, each for its windows and relative to
     /// its scale; none if the arm lacks one of the columns.
     pub groups: Vec<Option<Vec<Deviation>>>,
+    /// Why an exact solution cannot be compared.
+    pub undefined: Option<Reason>,
     /// Name of the column whose phase was compared, and its delay in the unit of time.
     pub late: Option<(String, f64)>,
 }
@@ -78,8 +81,10 @@ impl Compared {
             };
             known.windows.iter().map(far).collect()
         });
+        let compared = reference.known.iter().flat_map(|known| &known.group.columns);
+        let undefined = Exact::undefined(&right, compared).filter(|_| reference.is_exact());
         let columns = arm.columns.iter().filter_map(deviated);
-        Self { columns: columns.collect(), groups: groups.collect(), late }
+        Self { columns: columns.collect(), groups: groups.collect(), undefined, late }
     }
 
     /// Deviation of a column.

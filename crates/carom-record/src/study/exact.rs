@@ -1,7 +1,7 @@
 //! The exact solution of an arm, from the formulas of [exact].
 //!
 //! ```text
-//! histories    formulas at the rows of the run that is compared, and at PARTS instants between any two of them
+//! histories    formulas at the rows of the run that is compared, and, of forces and stresses, at PARTS − 1 instants between two
 //! metrics      of formulas at ROWS even instants; uncertain by what half of them change, and events by a row
 //! ```
 //!
@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 
 use carom_formula::Formula;
 
+use super::groups::is_trajectory;
 use super::trajectory::{FORCE, Trajectory, forces};
 use crate::facts::ContactFacts;
 use crate::metrics;
@@ -89,30 +90,36 @@ impl Exact {
 
     /// The solution beside a run with these times of rows.
     pub(super) fn beside(&self, rows: &[f64]) -> Trajectory {
-        let parts = PARTS as f64;
+        // Only what is averaged is needed between rows.
+        let parts = if self.texts.keys().all(|column| is_trajectory(column)) { 1 } else { PARTS };
         let within = |pair: &[f64]| {
-            let [from, to] = [pair[0], pair[1]];
-            (0..PARTS).map(move |k| if k == 0 { from } else { from + k as f64 / parts * (to - from) })
+            let from = pair[0];
+            let length = pair[1] - from;
+            (0..parts).map(move |k| from + k as f64 / parts as f64 * length)
         };
         let mut times: Vec<f64> = rows.windows(2).flat_map(within).chain(rows.last().copied()).collect();
         times.dedup();
         self.trajectory(&self.history(times))
     }
 
-    /// Whether two solutions have the same formulas.
+    /// Whether two solutions have the same formulas, to the same end.
     pub(super) fn is_alike(&self, other: &Self) -> bool {
-        self.texts == other.texts
+        self.texts == other.texts && self.end == other.end
     }
 
     /// The first instant of a sampled solution at which one of these columns, or components of the
     /// contact force, is not a number.
-    pub(super) fn undefined(sampled: &Trajectory, columns: &[String]) -> Option<Reason> {
-        columns.iter().find_map(|column| {
+    pub(super) fn undefined<'a>(
+        sampled: &Trajectory,
+        columns: impl IntoIterator<Item = &'a String>,
+    ) -> Option<Reason> {
+        columns.into_iter().find_map(|column| {
             let force = sampled.forces.get(column).map(|force| &force.values);
             let values = sampled.columns.get(column).or(force)?;
             let row = values.iter().position(|value| !value.is_finite())?;
             let what = if force.is_some() { "the contact force along " } else { "" };
-            let [value, time] = [values[row], sampled.times[row]];
+            let value = values[row];
+            let time = sampled.times[row];
             Some(format!("the formula of {what}`{column}` in [exact] is {value} at t = {time:.6}").into())
         })
     }

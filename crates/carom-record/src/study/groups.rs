@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::trajectory::Trajectory;
+use super::trajectory::{Force, Trajectory};
 use crate::metrics::Signal;
 
 /// Kind of a group of columns.
@@ -55,7 +55,10 @@ pub fn groups(run: &Trajectory, bodies: &BTreeMap<String, String>) -> Vec<Group>
         };
         found.entry(key).or_default().push(column.clone());
     }
-    let forces: Vec<String> = run.forces.keys().cloned().collect();
+    // Of several contacts, those that touch.
+    let touches =
+        |(name, force): &(&String, &Force)| !name.contains('.') || force.values.iter().any(|x| *x != 0.0);
+    let forces: Vec<String> = run.forces.iter().filter(touches).map(|(name, _)| name.clone()).collect();
     if !forces.is_empty() {
         found.insert((Kind::Force, "contact force".to_owned()), forces);
     }

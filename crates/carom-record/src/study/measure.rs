@@ -191,7 +191,8 @@ impl<'a> Ranks<'a> {
             let each =
                 known.iter().map(|(name, right, _)| Some(relative(row.value(name)? - right, *right) / count));
             let vector: Vec<f64> = each.collect::<Option<_>>()?;
-            Some(Errors { error: product(&vector, &vector).sqrt(), vector, noise: None })
+            let error = product(&vector, &vector).sqrt();
+            error.is_finite().then_some(Errors { error, vector, noise: None })
         };
         let bounds = known.iter().map(|(_, right, off)| relative(*off, *right));
         let words = known.iter().map(|(name, right, _)| {

@@ -94,12 +94,17 @@ fn others<'a>(arm: &'a Arm, key: &str) -> impl Iterator<Item = &'a str> {
 }
 
 /// The case of an arm, if it is not that of the study, and its changes of other keys in the order
-/// of keys, of several of one key the last: their order has no meaning.
+/// of keys, of several of one key the last: their order has no meaning, unless one replaces a table
+/// and another one a key of it.
 fn changes_beside<'a>(arm: &'a Arm, key: &str) -> Vec<&'a str> {
     let name = |set: &str| set.split('=').next().unwrap_or_default().trim().to_owned();
     let mut last: BTreeMap<String, &str> = BTreeMap::new();
     for set in others(arm, key) {
         last.insert(name(set), set);
+    }
+    let is_within = |inner: &String| last.keys().any(|outer| inner.starts_with(&format!("{outer}.")));
+    if last.keys().any(is_within) {
+        return others(arm, key).collect();
     }
     last.into_values().collect()
 }

@@ -164,7 +164,14 @@ impl Ranks<'_> {
             is_unknown && self.rows[*run].status == Some(Status::Finished)
         };
         let runs = self.manifest.runs_of(arm);
-        let unknown = || runs.iter().any(lacks).then(|| "it lacks a quantity of the measure".to_owned());
+        let unknown = || {
+            let run = runs.iter().find(|run| lacks(run))?;
+            let undefined = self.compared[*run].as_ref().and_then(|compared| compared.undefined.as_ref());
+            Some(
+                undefined
+                    .map_or_else(|| "it lacks a quantity of the measure".to_owned(), ToString::to_string),
+            )
+        };
         let why = runs.iter().find_map(of).or_else(unknown)?;
         Some(Apart { arm, why })
     }

@@ -121,6 +121,11 @@ impl Reference {
         self
     }
 
+    /// Whether it consists of formulas.
+    pub(super) fn is_exact(&self) -> bool {
+        self.runs.exact.is_some()
+    }
+
     /// Whether the uncertainty includes that of the mesh: the reference is exact, or its mesh was
     /// refined.
     pub fn refines_mesh(&self) -> bool {

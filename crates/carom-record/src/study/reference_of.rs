@@ -101,7 +101,8 @@ impl StudyManifest {
         if self.reference.as_deref() == Some("exact") {
             let Some(facts) = self.arms.first().map(|arm| &arm.facts) else { return Ok(None) };
             let mut exact = Reference::of_formulas(&facts.exact, &facts.contacts, facts.end);
-            exact.differs = self.arms.iter().any(|arm| arm.facts.exact != facts.exact);
+            exact.differs =
+                self.arms.iter().any(|arm| arm.facts.exact != facts.exact || arm.facts.end != facts.end);
             let window = self.window("[exact] needs `window`, the time to average over");
             return Ok(Some(exact.grouped(&self.bodies_of_probes(), &window)));
         }

@@ -1,14 +1,15 @@
 //! Arms in different systems of units, compared in the units of the first one: equal motions have
 //! equal numbers.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use serde_json::Value;
 
 use super::arm::Arm;
 use super::manifest::StudyManifest;
 use super::row::Row;
-use crate::{History, Run, units};
+use crate::units::{self, Labels};
+use crate::{History, Run};
 
 /// Labels of length, time and mass of an arm.
 fn system(arm: &Arm) -> [String; 3] {
@@ -17,14 +18,32 @@ fn system(arm: &Arm) -> [String; 3] {
     ["length", "time", "mass"].map(|name| label(name).unwrap_or_default())
 }
 
+/// The labels of all units of a system, in an order.
+fn labels([length, time, mass]: &[String; 3]) -> Vec<String> {
+    let Labels {
+        time,
+        length,
+        velocity,
+        acceleration,
+        force,
+        moment,
+        momentum,
+        angular_momentum,
+        energy,
+        stress,
+        none,
+    } = Labels::of(length, time, mass);
+    let rate = format!("1/{time}");
+    let of_motion = [time, rate, length, velocity, acceleration];
+    let of_force = [force, moment, momentum, angular_momentum, energy, stress, none];
+    of_motion.into_iter().chain(of_force).collect()
+}
+
 /// Systems of units of the arms, and the one that they are converted to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Systems {
-    /// Whether each run is in the system of the first arm.
-    own: Vec<bool>,
-    first: [String; 3],
-    /// Units of columns and metrics by name, of the first run that has them.
-    known: BTreeMap<String, String>,
+    /// Labels of length, time and mass of each run, those of the first arm first.
+    of_runs: Vec<[String; 3]>,
     /// Units without a known factor.
     unknown: BTreeSet<String>,
 }
@@ -32,60 +51,50 @@ pub struct Systems {
 impl Systems {
     /// The systems of the runs of a study.
     pub fn of(manifest: &StudyManifest) -> Self {
-        let first = manifest.arms.first().map(system).unwrap_or_default();
-        let own = manifest.runs().map(|arm| system(arm) == first).collect();
-        Self { own, first, ..Self::default() }
+        Self { of_runs: manifest.runs().map(system).collect(), unknown: BTreeSet::new() }
     }
 
     /// Whether a run is in the system of the first arm.
     pub fn is_own(&self, run: usize) -> bool {
-        self.own.get(run).is_none_or(|own| *own)
+        self.of_runs.get(run).is_none_or(|system| *system == self.of_runs[0])
     }
 
     /// Whether all runs are.
     pub fn is_one(&self) -> bool {
-        self.own.iter().all(|own| *own)
-    }
-
-    /// Factor of the values of a quantity of a run; none if its unit is not known. What no run
-    /// before has keeps its unit.
-    fn factor(&mut self, run: usize, name: &str, unit: &mut String) -> Option<f64> {
-        let to = self.known.entry(name.to_owned()).or_insert_with(|| unit.clone());
-        if self.own.get(run).is_none_or(|own| *own) {
-            return Some(1.0);
-        }
-        let factor = units::factor(unit, to);
-        if factor.is_none() {
-            self.unknown.insert(unit.clone());
-        }
-        unit.clone_from(to);
-        factor
+        (0..self.of_runs.len()).all(|run| self.is_own(run))
     }
 
     /// Converts the columns and metrics of a run; a metric in an unknown unit has no value, and a
     /// column in one is removed. Rows of contacts, whose columns have no units, are removed.
     pub(super) fn convert(&mut self, run: usize, record: &mut Run, row: &mut Row) {
-        if self.is_one() {
+        if self.is_own(run) {
             return;
         }
-        for metric in &mut row.metrics {
-            let factor = self.factor(run, &metric.name, &mut metric.unit);
+        let [from, to] = [run, 0].map(|run| labels(&self.of_runs[run]));
+        let mut factor = |unit: &mut String| {
+            // What is no unit of the case, as seconds of computation, stays as it is.
+            let Some(known) = from.iter().position(|label| label == unit) else { return Some(1.0) };
+            let factor = units::factor(unit, &to[known]);
+            if factor.is_none() {
+                self.unknown.insert(unit.clone());
+            }
+            unit.clone_from(&to[known]);
+            factor
+        };
+        for metric in row.metrics.iter_mut().filter(|metric| !metric.is_measured()) {
+            let factor = factor(&mut metric.unit);
             metric.value = metric.value.zip(factor).map(|(value, factor)| value * factor);
         }
         let columns = std::mem::take(&mut record.history.columns).into_iter();
-        let kept =
-            columns.zip(std::mem::take(&mut record.history.values)).filter_map(|(mut column, mut values)| {
-                let factor = self.factor(run, &column.name, &mut column.unit)?;
-                if factor != 1.0 {
-                    values.iter_mut().for_each(|value| *value *= factor);
-                }
-                Some((column, values))
-            });
+        let values = std::mem::take(&mut record.history.values);
+        let kept = columns.zip(values).filter_map(|(mut column, mut values)| {
+            let factor = factor(&mut column.unit)?;
+            values.iter_mut().for_each(|value| *value *= factor);
+            Some((column, values))
+        });
         let (columns, values) = kept.unzip();
         record.history = History::new(columns, values);
-        if !self.is_own(run) {
-            record.contact.clear();
-        }
+        record.contact.clear();
     }
 
     /// Words for the page; nothing where all arms have one system.
@@ -101,7 +110,7 @@ impl Systems {
         Some(format!(
             "The arms have different systems of units. All values are in the units of the first arm, \
              {}.{left_out}",
-            self.first.join(", ")
+            self.of_runs[0].join(", ")
         ))
     }
 }

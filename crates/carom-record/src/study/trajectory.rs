@@ -60,7 +60,10 @@ pub(super) fn forces(history: &History, contacts: &[ContactFacts]) -> BTreeMap<S
             Some((format!("{name}.{axis}"), Force { values, impulse }))
         })
     };
-    contacts.iter().flat_map(of_contact).collect()
+    // The force of a side on itself depends on which of two places is secondary.
+    let between_bodies =
+        contacts.iter().filter(|contact| contact.primary.as_ref() != Some(&contact.secondary));
+    between_bodies.flat_map(of_contact).collect()
 }
 
 impl Trajectory {

@@ -101,21 +101,24 @@ impl Bodies<'_> {
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
             .with_single_facets(single)
             .of_body(opposite.clone());
-        let points = EdgePoints::new(&opposite, side.clone(), self.depth_in(primary), self.reference);
-        let their_points =
-            EdgePoints::new(&side, opposite.clone(), self.depth_in(secondary), self.reference).reversed();
-        let others = NodeToPatch::new(own.nodes, opposite)
+        let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(nodes)];
+        let others = NodeToPatch::new(own.nodes, opposite.clone())
             .with_allowed(own.depths)
             .with_single_facets(single)
-            .of_body(side)
+            .of_body(side.clone())
             .reversed();
-        let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(nodes), Box::new(others), Box::new(edges)];
+        parts.push(Box::new(others));
+        parts.push(Box::new(edges));
         let spec = &self.case.contacts[k];
-        // An overlap that is kept is one of nodes, which points between them would close; springs
-        // let in nodes and points alike, and those of both would add up.
+        // An overlap that is kept or relaxed is one of nodes, which points between them would close;
+        // springs let in nodes and points alike, and those of both would add up.
         if spec.overlap == case::Overlap::Refuse && spec.enforcement.is_exact() {
-            parts.push(Box::new(points));
-            parts.push(Box::new(their_points));
+            let [ours, theirs] = &earlier;
+            let depths = [primary, secondary].map(|side| self.depth_in(side));
+            let points = EdgePoints::new(&opposite, side.clone(), depths[0], ours, self.reference);
+            let reverse = EdgePoints::new(&side, opposite, depths[1], theirs, self.reference);
+            let both = [points, reverse.map(EdgePoints::reversed)];
+            parts.extend(both.into_iter().flatten().map(|points| Box::new(points) as Box<dyn Kinematics>));
         }
         Combined::new(parts)
     }

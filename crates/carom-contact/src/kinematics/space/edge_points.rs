@@ -12,11 +12,13 @@
 //! with z the nodes of the facet. Like smooth nodes of the primary (`../reversed.rs`), points may
 //! enter the other side by a small depth, so that nodes and points do not constrain an edge twice.
 
+use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
 use carom_algebra::Vector;
 
 use super::boundary::Boundary;
+use super::clear::Clear;
 use super::node_to_patch::NodeToPatch;
 use super::patch::place;
 use crate::friction::FrictionState;
@@ -35,26 +37,48 @@ pub struct EdgePoints {
     nodes: Vec<Vec<(usize, f64)>>,
     /// A node of the edge of every point, which represents the point.
     names: Vec<usize>,
-    /// Positions of the nodes and of the points, in memory that is reused.
-    places: Mutex<[Vec<f64>; 2]>,
+    tools: Mutex<Tools>,
+}
+
+/// Memory that searches reuse; results do not depend on its content.
+#[derive(Debug)]
+struct Tools {
+    /// Positions of the nodes and of the points.
+    places: [Vec<f64>; 2],
+    /// Whether points may be too deep; none where the surface of the body is not known.
+    clear: Option<Clear>,
 }
 
 impl EdgePoints {
     /// Points of the sharp edges of the side `own` against the side `other`, which each of them may
-    /// enter by `depth`; `reference`: the reference positions of all nodes.
-    pub fn new(own: &Boundary, other: Boundary, depth: f64, reference: &[f64]) -> Self {
-        let points = own.edge_points(reference);
+    /// enter by `depth`; none if there are no such edges. `earlier`: the nodes of sides whose own
+    /// contacts hold the edges that they share with this one; `reference`: the reference positions of
+    /// all nodes.
+    pub fn new(
+        own: &Boundary,
+        other: Boundary,
+        depth: f64,
+        earlier: &BTreeSet<usize>,
+        reference: &[f64],
+    ) -> Option<Self> {
+        let mut points = own.edge_points(reference);
+        points.retain(|point| !point.nodes.iter().all(|(node, _)| earlier.contains(node)));
+        if points.is_empty() {
+            return None;
+        }
         let first = reference.len() / 3;
         let numbers: Vec<usize> = (first..first + points.len()).collect();
         let allowed = vec![depth; points.len()];
         let own = own.clone().with_points(first, &points);
-        Self {
+        let nodes: Vec<Vec<(usize, f64)>> = points.into_iter().map(|point| point.nodes).collect();
+        let clear = other.is_whole().then(|| Clear::new(&nodes, other.clone(), depth));
+        Some(Self {
             first,
-            names: points.iter().map(|point| point.nodes[0].0).collect(),
+            names: nodes.iter().map(|nodes| nodes[0].0).collect(),
             points: NodeToPatch::new(numbers, other).with_allowed(allowed).of_body(own),
-            nodes: points.into_iter().map(|point| point.nodes).collect(),
-            places: Mutex::default(),
-        }
+            nodes,
+            tools: Mutex::new(Tools { places: [Vec::new(), Vec::new()], clear }),
+        })
     }
 
     /// Contact of points of the primary side with the secondary one.
@@ -63,21 +87,28 @@ impl EdgePoints {
         Self { points: self.points.reversed(), ..self }
     }
 
+    /// Position of a point.
+    fn point(&self, point: usize, y: &[f64]) -> Vector<3> {
+        let weighted = |&(node, weight): &(usize, f64)| place(y, node) * weight;
+        self.nodes[point].iter().map(weighted).fold(Vector::ZERO, |sum, part| sum + part)
+    }
+
     /// The positions of all nodes, followed by those of the points.
     fn extend(&self, y: &[f64], places: &mut Vec<f64>) {
         places.clear();
         places.extend_from_slice(y);
-        for nodes in &self.nodes {
-            let weighted = |&(node, weight): &(usize, f64)| place(y, node) * weight;
-            let point = nodes.iter().map(weighted).fold(Vector::ZERO, |sum, part| sum + part);
-            places.extend(point.0);
-        }
+        (0..self.nodes.len()).for_each(|point| places.extend(self.point(point, y).0));
     }
 
-    /// The result of a function of the positions of all nodes and points.
-    fn with_points<T>(&self, y: &[f64], of: impl FnOnce(&[f64]) -> T) -> T {
-        let [places, _] = &mut *self.places.lock().unwrap_or_else(PoisonError::into_inner);
-        self.extend(y, places);
+    /// The result of a function of the positions of all nodes and of one point.
+    fn with_point<T>(&self, point: usize, y: &[f64], of: impl FnOnce(&[f64]) -> T) -> T {
+        let Tools { places: [places, _], .. } =
+            &mut *self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        places.clear();
+        places.extend_from_slice(y);
+        places.resize(y.len() + 3 * self.nodes.len(), 0.0);
+        let at = y.len() + 3 * point;
+        places[at..at + 3].copy_from_slice(&self.point(point, y).0);
         of(places)
     }
 
@@ -155,10 +186,19 @@ impl Kinematics for EdgePoints {
         pairing: &mut Pairing,
         events: &mut Vec<PairEvent>,
     ) -> bool {
-        let mut of_points = Vec::new();
-        let [start, end] = &mut *self.places.lock().unwrap_or_else(PoisonError::into_inner);
-        self.extend(before, start);
+        let Tools { places: [start, end], clear } =
+            &mut *self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut clear = clear.as_mut().filter(|_| pairing.pairs.is_empty());
+        if clear.as_ref().is_some_and(|clear| clear.holds(now)) {
+            return false;
+        }
         self.extend(now, end);
+        let points = end[3 * self.first..].as_chunks::<3>().0.iter();
+        if clear.as_mut().is_some_and(|clear| clear.measure(points, now)) {
+            return false;
+        }
+        self.extend(before, start);
+        let mut of_points = Vec::new();
         let changed = self.points.search(start, end, pairing, &mut of_points);
         pairing.pairs.iter_mut().for_each(|pair| pair.tangential.friction_state = FrictionState::FREE);
         events.extend(of_points.into_iter().map(|event| self.named(event)));
@@ -172,14 +212,17 @@ impl Kinematics for EdgePoints {
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
         let mut of_points = Vec::new();
-        let changed = self.with_points(now, |now| self.points.update_facets(now, pairing, &mut of_points));
+        let Tools { places: [places, _], .. } =
+            &mut *self.tools.lock().unwrap_or_else(PoisonError::into_inner);
+        self.extend(now, places);
+        let changed = self.points.update_facets(places, pairing, &mut of_points);
         events.extend(of_points.into_iter().map(|event| self.named(event)));
         changed
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let mut of_point = Rows::new(3);
-        self.with_points(y, |y| self.points.measure(pair, y, &mut of_point))
+        self.with_point(pair.node, y, |y| self.points.measure(pair, y, &mut of_point))
             .map_err(|error| error.at_node(self.names[pair.node]))?;
         self.share(pair.node, &of_point, rows);
         Ok(())
@@ -188,7 +231,7 @@ impl Kinematics for EdgePoints {
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
         let mut row = Rows::new(3);
         let mut of_point = Vec::new();
-        let is_measured = self.with_points(y, |y| {
+        let is_measured = self.with_point(pair.node, y, |y| {
             let is_measured = self.points.measure(&mut { *pair }, y, &mut row).is_ok();
             if is_measured {
                 let size = row.row(0).gradient.len();
@@ -220,7 +263,8 @@ impl Kinematics for EdgePoints {
 
     fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let mut of_point = Rows::new(3);
-        self.with_points(y, |y| self.points.slip(pair, y, moved, &mut of_point))?;
+        self.with_point(pair.node, y, |y| self.points.slip(pair, y, moved, &mut of_point))
+            .map_err(|error| error.at_node(self.names[pair.node]))?;
         self.share(pair.node, &of_point, rows);
         Ok(())
     }

@@ -4,6 +4,7 @@
 
 mod boundary;
 mod candidate;
+mod clear;
 mod closed_surface;
 mod crease;
 mod crosses;
