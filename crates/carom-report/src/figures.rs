@@ -178,18 +178,12 @@ fn rotation(histories: &Histories, scene: &Scene) -> Option<Figure> {
     const LEAST: f64 = 5.0;
     let mut series = Vec::new();
     for (k, (body, degrees)) in scene.rotations.iter().enumerate() {
-        // An angle goes on beyond half a turn.
-        let mut y: Vec<f64> = Vec::new();
-        for degree in degrees {
-            let last = y.last().copied().unwrap_or(0.0);
-            y.push(degree + 360.0 * ((last - degree) / 360.0).round());
-        }
-        if largest(&y) > LEAST {
+        if largest(degrees) > LEAST {
             series.push(Series {
                 label: body.clone(),
                 color: LINES[k % LINES.len()],
                 x: &scene.times,
-                y,
+                y: degrees.clone(),
                 ..Series::default()
             });
         }

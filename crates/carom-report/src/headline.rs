@@ -197,7 +197,9 @@ impl Facts<'_> {
     fn of_fields(&self, name: &str, peak: Option<&Peak>) -> Option<Number> {
         let Peak { value, time, unit } =
             peak.filter(|peak| !self.sizes.is_round_off(peak.value, &peak.unit))?;
-        Some(Number::new(name, amount(*value, unit), format!("at {}", instant_label(self.run, *time))))
+        let frames = self.scene.map_or(0, |scene| scene.times.len());
+        let at = instant_label(self.run, *time);
+        Some(Number::new(name, amount(*value, unit), format!("at {at}, of {frames} frames")))
     }
 
     fn largest_stress(&self) -> Option<Number> {

@@ -86,10 +86,19 @@ fn thinned(count: usize, stride: usize) -> impl Iterator<Item = usize> {
     (0..count).filter(move |i| i % stride.max(1) == 0 || i + 1 == count)
 }
 
-/// The angle in degrees by which the nodes of each plane body have turned about their mean, in the
-/// sense of least squares.
-fn rotations(fields: &FieldSet) -> Vec<f64> {
+/// The rotation of the nodes of a plane body about their mean, in the sense of least squares.
+pub(crate) struct Turned {
+    /// Angle in degrees, up to whole turns.
+    pub(crate) degrees: f64,
+    /// Its rate; zero where no velocities are recorded.
+    pub(crate) rate: f64,
+}
+
+/// The rotation of each plane body.
+fn rotations(fields: &FieldSet) -> Vec<Turned> {
     let now: Vec<[f64; 2]> = places(fields);
+    let velocities = fields.array("velocity");
+    let velocity = |k: usize, d: usize| velocities.map_or(0.0, |of| of.values[k * of.components + d]);
     let angle = |block: &carom_record::Block| {
         let mut nodes = block.connectivity.clone();
         nodes.sort_unstable();
@@ -97,17 +106,41 @@ fn rotations(fields: &FieldSet) -> Vec<f64> {
         let mean = |of: &dyn Fn(usize) -> f64| nodes.iter().map(|&k| of(k)).sum::<f64>() / nodes.len() as f64;
         let before = [0, 1].map(|d| mean(&|k| fields.points[k][d]));
         let after = [0, 1].map(|d| mean(&|k| now[k][d]));
+        let moves = [0, 1].map(|d| mean(&|k| velocity(k, d)));
         let mut across = 0.0;
         let mut along = 0.0;
+        let mut turning = 0.0;
+        let mut inertia = 0.0;
         for &k in &nodes {
             let a = [0, 1].map(|d| fields.points[k][d] - before[d]);
             let b = [0, 1].map(|d| now[k][d] - after[d]);
             across += a[0] * b[1] - a[1] * b[0];
             along += a[0] * b[0] + a[1] * b[1];
+            let v = [0, 1].map(|d| velocity(k, d) - moves[d]);
+            turning += b[0] * v[1] - b[1] * v[0];
+            inertia += b[0] * b[0] + b[1] * b[1];
         }
-        across.atan2(along).to_degrees()
+        let rate = if inertia > 0.0 { (turning / inertia).to_degrees() } else { 0.0 };
+        Turned { degrees: across.atan2(along).to_degrees(), rate }
     };
     fields.blocks.iter().filter(|block| is_plane(block)).map(angle).collect()
+}
+
+/// Angles in degrees with their whole turns: from one frame to the next, as many as the mean of
+/// their rates tells.
+fn continued(frames: &[&Turned], times: &[f64]) -> Vec<f64> {
+    let mut angles: Vec<f64> = Vec::new();
+    for (k, frame) in frames.iter().enumerate() {
+        let expected = match k.checked_sub(1) {
+            None => 0.0,
+            Some(before) => {
+                let rate = f64::midpoint(frames[before].rate, frame.rate);
+                angles[before] + rate * (times[k] - times[before])
+            }
+        };
+        angles.push(frame.degrees + 360.0 * ((expected - frame.degrees) / 360.0).round());
+    }
+    angles
 }
 
 /// Contact forces −λn on the secondary nodes by step: position and force in so many dimensions.
@@ -175,7 +208,7 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
     let mut entries: Vec<&FieldEntry> =
         thinned(run.fields.len(), run.fields.len().div_ceil(most)).map(|k| &run.fields[k]).collect();
     let mut frames = Vec::new();
-    let mut turned: Vec<Vec<f64>> = Vec::new();
+    let mut turned: Vec<Vec<Turned>> = Vec::new();
     let mut stress = None;
     let mut displacement = None;
     entries.retain(|entry| {
@@ -277,9 +310,12 @@ pub(crate) fn scene(run: &Recorded) -> Option<Scene> {
     };
     let names: Vec<&str> =
         first.blocks.iter().filter(|block| is_plane(block)).map(|block| block.body.as_str()).collect();
-    let of_body = |(k, name): (usize, &&str)| ((*name).to_owned(), turned.iter().map(|all| all[k]).collect());
+    let times: Vec<f64> = entries.iter().map(|entry| entry.time).collect();
+    let of_body = |(k, name): (usize, &&str)| {
+        let frames: Vec<&Turned> = turned.iter().map(|all| &all[k]).collect();
+        ((*name).to_owned(), continued(&frames, &times))
+    };
     let rotations = names.iter().enumerate().map(of_body).collect();
-    let times = entries.iter().map(|entry| entry.time).collect();
     Some(Scene { figure, data, stress, displacement, times, rotations })
 }
 
@@ -378,6 +414,22 @@ impl Tools<'_> {
                 "Wheel, after a click: zoom. One finger turns or moves, two move and zoom. Keys: arrows, + and −, 0: first \
                  view; Space: play; comma and full stop: previous and next instant."
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Turned, continued};
+
+    /// One and a quarter turns from frame to frame, forwards and backwards.
+    #[test]
+    fn angles_go_on_beyond_whole_turns() {
+        for sign in [1.0, -1.0] {
+            let frame = |degrees: f64| Turned { degrees: sign * degrees, rate: sign * 360.0 };
+            let frames = [frame(0.0), frame(90.0), frame(180.0), frame(-90.0)];
+            let found = continued(&frames.each_ref(), &[0.0, 1.25, 2.5, 3.75]);
+            assert_eq!(found, [0.0, 450.0, 900.0, 1350.0].map(|degrees| sign * degrees));
         }
     }
 }

@@ -11,8 +11,11 @@ use crate::resolved::Planned;
 /// Adds the problems of a study with a goal; `planned` are the arms and the runs of
 /// the computed reference.
 pub(crate) fn check(file: &StudyFile, planned: &[Planned], problems: &mut Vec<Problem>) {
-    if file.reference.is_some() {
-        units(planned, problems);
+    if let Some(key) = [("reference", file.reference.is_some()), ("overlay", !file.overlays.is_empty())]
+        .into_iter()
+        .find_map(|(key, is_given)| is_given.then_some(key))
+    {
+        units(key, planned, problems);
     }
     if file.goal.is_none() {
         return;
@@ -27,16 +30,16 @@ pub(crate) fn check(file: &StudyFile, planned: &[Planned], problems: &mut Vec<Pr
     }
 }
 
-/// A reference, and exact formulas, are in one system of units.
-fn units(planned: &[Planned], problems: &mut Vec<Problem>) {
+/// A reference, exact formulas and measured data are in one system of units.
+fn units(key: &str, planned: &[Planned], problems: &mut Vec<Problem>) {
     let system = |arm: &Planned| {
         [&arm.case.units.length, &arm.case.units.time, &arm.case.units.mass].map(Clone::clone)
     };
     let Some(first) = planned.first() else { return };
     if let Some(other) = planned.iter().find(|arm| system(arm) != system(first)) {
         let what = format!("\"{}\" has other units than \"{}\"", other.draft.name, first.draft.name);
-        let why = "the arms of a study with a reference are compared with it in its units";
-        problems.push(Problem::new("reference", what, why, "give all of them the same [units]"));
+        let why = "a reference, or measured data, and all arms that are compared with it need the same units";
+        problems.push(Problem::new(key, what, why, "give all of them the same [units]"));
     }
 }
 

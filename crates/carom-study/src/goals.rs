@@ -40,8 +40,8 @@ fn compared(goal: Goal) -> Option<Compared> {
     }
 }
 
-/// Whether the forces of all contacts are those on one party: there is one contact, or one body meets
-/// rigid obstacles.
+/// Whether the forces of all contacts are those on one party: there is one contact, or one body
+/// meets rigid obstacles.
 fn counts_as_one(case: &Case) -> bool {
     let body = |contact: &ContactSpec| body_of(&contact.secondary).to_owned();
     let bodies: BTreeSet<String> = case.contacts.iter().map(body).collect();

@@ -29,7 +29,7 @@ impl Study {
 }
 
 /// A case without step, output and expectations.
-pub(super) fn method(case: &Value) -> Value {
+fn method(case: &Value) -> Value {
     let mut method = case.clone();
     if let Some(table) = method.as_object_mut() {
         ["output", "expects", "title"].iter().for_each(|key| _ = table.remove(*key));

@@ -38,6 +38,12 @@ impl Arm {
     }
 }
 
+/// Number of steps of an arm from one row of its history to the next.
+pub(super) fn history_every(arm: &Arm) -> f64 {
+    let given = arm.case.get("output").and_then(|output| output.get("history_every"));
+    given.and_then(serde_json::Value::as_f64).unwrap_or(1.0)
+}
+
 /// Whether a change `key=value` sets the time step.
 pub fn sets_step(set: &str) -> bool {
     set.split('=').next().is_some_and(|key| key.trim() == "time.step")
@@ -77,8 +83,19 @@ fn set<'a>(arm: &'a Arm, key: &str) -> Option<&'a str> {
     arm.sets.iter().rev().find_map(sets)
 }
 
+/// The number of a key in the resolved case; tables in lists have names, and of a list of numbers
+/// the first one counts.
 fn of_case(arm: &Arm, key: &str) -> Option<f64> {
-    key.split('.').try_fold(&arm.case, |node, part| node.get(part))?.as_f64()
+    let child = |node: &'_ serde_json::Value, part: &str| -> Option<serde_json::Value> {
+        if let Some(list) = node.as_array() {
+            let is_named = |table: &&serde_json::Value| table.get("name").is_some_and(|name| name == part);
+            return list.iter().find(is_named).cloned();
+        }
+        let lists = [part.to_owned(), format!("{part}s"), part.replace("body", "bodies")];
+        lists.iter().find_map(|name| node.get(name)).cloned()
+    };
+    let found = key.split('.').try_fold(arm.case.clone(), |node, part| child(&node, part))?;
+    found.as_array().and_then(|list| list.first()).unwrap_or(&found).as_f64()
 }
 
 fn number(text: &str) -> Option<f64> {

@@ -1,13 +1,13 @@
 //! Comparison of an arm with the reference: deviations of columns in the smooth phases before and
 //! after the first contact, and its delay.
 
-use super::arm::step;
+use super::arm::{Arm, history_every, step};
+use super::digits::short;
 use super::exact::Exact;
 use super::groups::is_trajectory;
 use super::manifest::StudyManifest;
-use super::reference::{Beside, Reference, Trajectory};
+use super::reference::{Beside, Known, Reference, Trajectory};
 use crate::Reason;
-use crate::facts::Facts;
 use crate::metrics::{self, Distance, phase_shift};
 use crate::order::from_errors;
 
@@ -39,17 +39,17 @@ pub struct Compared {
     /// Errors in the groups of the reference, in their order, each for its windows and relative to
     /// its scale; none if the arm lacks one of the columns.
     pub groups: Vec<Option<Vec<Deviation>>>,
-    /// Why an exact solution cannot be compared.
+    /// Why a quantity cannot be compared.
     pub undefined: Option<Reason>,
     /// Name of the column whose phase was compared, and its delay in the unit of time.
     pub late: Option<(String, f64)>,
 }
 
 impl Compared {
-    /// Compares an arm, which has these facts, with a reference; `contact` is the interval of the
-    /// first contact of the reference.
-    pub fn of(arm: &Trajectory, facts: &Facts, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
-        let Some(Beside { run: right, is_own }) = reference.beside(facts, &arm.times) else {
+    /// Compares the run of an arm with a reference; `contact` is the interval of the first contact
+    /// of the reference.
+    pub fn of(arm: &Trajectory, of: &Arm, reference: &Reference, contact: Option<(f64, f64)>) -> Self {
+        let Some(Beside { run: right, scales }) = reference.beside(&of.facts, &arm.times) else {
             return Self::default();
         };
         let known = |column: &str| Some((&right.times[..], &right.columns.get(column)?[..]));
@@ -70,8 +70,16 @@ impl Compared {
             let late = phase_shift(&arm.times, values, known(column)?)?;
             Some((column.clone(), late))
         });
+        let row = arm.times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        let window = |known: &Known| known.windows.first().copied().filter(|window| *window > 0.0);
+        // Averages over less than two rows are not those of the steps between them.
+        let lacks_rows =
+            |known: &Known| history_every(of) > 1.0 && window(known).is_some_and(|w| row > 0.5 * w);
         let groups = reference.known.iter().map(|known| {
-            let scale = if is_own { known.group.scale(&right)? } else { known.scale };
+            if lacks_rows(known) {
+                return None;
+            }
+            let scale = scales.as_ref().map_or(Some(known.scale), |own| known.group.scale(own))?;
             let own = known.group.signal(arm)?;
             let right = known.group.signal(&right)?;
             let far = |window: &f64| {
@@ -83,6 +91,14 @@ impl Compared {
         });
         let compared = reference.known.iter().flat_map(|known| &known.group.columns);
         let undefined = Exact::undefined(&right, compared).filter(|_| reference.is_exact());
+        let thin = reference.known.iter().find(|known| lacks_rows(known)).and_then(window);
+        let thin = thin.map(|window| {
+            let [row, window] = [row, window].map(short);
+            let why =
+                format!("`output.history_every` leaves rows {row} apart, too long to average over {window}");
+            Reason::from(why)
+        });
+        let undefined = undefined.or(thin);
         let columns = arm.columns.iter().filter_map(deviated);
         Self { columns: columns.collect(), groups: groups.collect(), undefined, late }
     }

@@ -65,6 +65,9 @@ pub fn converged(sizes: &[f64], values: &[f64]) -> Result<Converged, Reason> {
         return Err("a single run gives no error estimate".into());
     };
     let r21 = h2 / h1;
+    if r21 <= 1.0 {
+        return Err("step and mesh of its levels are not both refined".into());
+    }
     let ([.., h3, _, _], [.., f3, _, _]) = (sizes, values) else {
         return Ok(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
     };

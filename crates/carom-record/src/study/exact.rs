@@ -79,13 +79,22 @@ impl Exact {
     /// The solution with its metrics at two numbers of even instants, the larger one last.
     pub(super) fn sampled(&self) -> [Trajectory; 2] {
         [ROWS / 2, ROWS].map(|rows| {
-            let history = self.history((0..=rows).map(|i| self.end * i as f64 / rows as f64).collect());
+            let history = self.history(self.even(rows));
             let mut known = metrics::all(&history);
             for column in self.texts.keys() {
                 known.extend(metrics::of_column(&history, column));
             }
             Trajectory { metrics: known, ..self.trajectory(&history) }
         })
+    }
+
+    /// The solution at even instants, without metrics.
+    pub(super) fn samples(&self) -> Trajectory {
+        self.trajectory(&self.history(self.even(ROWS)))
+    }
+
+    fn even(&self, rows: usize) -> Vec<f64> {
+        (0..=rows).map(|i| self.end * i as f64 / rows as f64).collect()
     }
 
     /// The solution beside a run with these times of rows.

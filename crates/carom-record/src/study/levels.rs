@@ -50,9 +50,18 @@ pub(super) struct Levels {
 }
 
 impl Levels {
-    /// Steps of the levels.
+    /// Sizes of the levels: their steps; where the mesh is refined too, in the smaller ratio of
+    /// step and mesh from one level to the next, which leaves the larger error.
     pub(super) fn sizes(&self) -> Vec<f64> {
-        self.all.iter().map(|level| level.step).collect()
+        let Some(finest) = self.all.last() else { return Vec::new() };
+        let mut sizes = vec![finest.step];
+        for pair in self.all.windows(2).rev() {
+            let of_step = pair[0].step / pair[1].step;
+            let of_mesh = if self.refines_mesh() { pair[1].mesh / pair[0].mesh } else { of_step };
+            sizes.push(sizes[sizes.len() - 1] * of_step.min(of_mesh));
+        }
+        sizes.reverse();
+        sizes
     }
 
     /// The first member of the finest level.

@@ -154,7 +154,7 @@ impl Study {
                 visit(i, &run);
             }
             let other = reference.as_ref().filter(|_| row.status == Some(Status::Finished));
-            compared.push(other.map(|r| Compared::of(&Trajectory::of(&run, &[]), &arm.facts, r, contact)));
+            compared.push(other.map(|r| Compared::of(&Trajectory::of(&run, &[]), arm, r, contact)));
             let of_kind = |of: MemberOf| {
                 let kind = kinds.iter().position(|kind| *kind == of.member)?;
                 Some((kind, &manifest.arms[of.arm].name))

@@ -9,11 +9,11 @@
 //! A reference that differs from the arms only in its step h_r has an error of its own, C h_rᵖ:
 //! then p is that of e₁/e₂ = (h₁ᵖ − h_rᵖ)/(h₂ᵖ − h_rᵖ).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use carom_formula::Formula;
+use serde_json::Value;
 
-use super::alike::method;
 use super::arm::{Arm, step};
 use super::arms::{ArmRecords, Needs};
 use super::manifest::StudyManifest;
@@ -60,7 +60,6 @@ fn groups(
     value: fn(&Arm, &str) -> Option<f64>,
 ) -> Vec<Refinement> {
     let mut groups: Vec<Refinement> = Vec::new();
-    let mut changes: Vec<Vec<&str>> = Vec::new();
     for (i, arm) in manifest.arms.iter().enumerate() {
         let reference =
             if arm.role.fine { name.is_some() } else { manifest.reference.as_ref() == Some(&arm.name) };
@@ -71,13 +70,12 @@ fn groups(
         };
         let common =
             name.map_or_else(|| others(arm, key).map(str::to_owned).collect(), |name| vec![name.to_owned()]);
-        let own = if name.is_some() { Vec::new() } else { changes_beside(arm, key) };
-        let Some(known) = changes.iter().position(|known| *known == own) else {
-            changes.push(own);
+        let is_alike =
+            |group: &&mut Refinement| name.is_some() || differ_in(key, arm, &manifest.arms[group.arms[0]]);
+        let Some(group) = groups.iter_mut().find(is_alike) else {
             groups.push(Refinement { common, arms: vec![i], steps: vec![step] });
             continue;
         };
-        let group = &mut groups[known];
         let at = group.steps.partition_point(|s| *s > step);
         group.steps.insert(at, step);
         group.arms.insert(at, i);
@@ -109,11 +107,28 @@ fn changes_beside<'a>(arm: &'a Arm, key: &str) -> Vec<&'a str> {
     last.into_values().collect()
 }
 
-/// Whether two arms differ in a key alone, or in nothing.
+/// Whether two arms differ in a key alone, or in nothing, whatever values of the case they state.
 pub(super) fn differ_in(key: &str, arm: &Arm, other: &Arm) -> bool {
-    let is_step = key == "time.step";
     changes_beside(arm, key) == changes_beside(other, key)
-        || is_step && arm.case.is_object() && method(&arm.case) == method(&other.case)
+        || arm.case.is_object() && are_equal_beside(key, &arm.case, &other.case)
+}
+
+/// Whether two resolved cases are equal but for a key, output, expectations and titles.
+fn are_equal_beside(key: &str, one: &Value, other: &Value) -> bool {
+    let last = key.rsplit('.').next().unwrap_or(key);
+    let is_apart = |name: &str| name == last || ["output", "expects", "title"].contains(&name);
+    match (one, other) {
+        (Value::Object(one), Value::Object(other)) => {
+            let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
+            names.into_iter().filter(|name| !is_apart(name)).all(|name| {
+                one.get(name).zip(other.get(name)).is_some_and(|(a, b)| are_equal_beside(key, a, b))
+            })
+        }
+        (Value::Array(one), Value::Array(other)) => {
+            one.len() == other.len() && one.iter().zip(other).all(|(a, b)| are_equal_beside(key, a, b))
+        }
+        _ => one == other,
+    }
 }
 
 /// The exact solution of an arm at the rows of its record.
@@ -357,10 +372,11 @@ impl Observed<'_> {
         };
         let finest = Finest::of(group)?;
         let [two, three] = finest.arms;
-        if let Some(deviation) = deviation(self.expect, self.manifest, three, series, norm)? {
+        let of_arm = |arm: usize| deviation(self.expect, self.manifest, arm, series, norm);
+        if let (Some(coarse), Some(fine)) = (of_arm(two)?, of_arm(three)?) {
             let (times, values) = columns(&[self.arm(two), self.arm(three)])?;
-            let errors = [deviation.of(&times, &values[0])?, deviation.of(&times, &values[1])?];
-            return finest.of_errors(errors, size(values.iter().flatten()) / deviation.scale);
+            let errors = [coarse.of(&times, &values[0])?, fine.of(&times, &values[1])?];
+            return finest.of_errors(errors, size(values.iter().flatten()) / fine.scale);
         }
         if let Some(reference) = self.standing() {
             let (_, values) = columns(&[self.arm(two), self.arm(three), reference])?;

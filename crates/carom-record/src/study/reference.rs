@@ -60,8 +60,9 @@ fn events(name: &str) -> f64 {
 pub(super) struct Beside<'a> {
     /// The run of the reference.
     pub(super) run: Cow<'a, Trajectory>,
-    /// Whether it is an exact solution that other arms do not have.
-    pub(super) is_own: bool,
+    /// The solution that gives the scales of errors, if it is another one than that of the first
+    /// arm.
+    pub(super) scales: Option<Trajectory>,
 }
 
 /// A value that a reference establishes.
@@ -97,7 +98,7 @@ pub struct Reference {
     /// Groups of columns in which arms are compared.
     pub known: Vec<Known>,
     /// Whether arms have other exact solutions than the first one.
-    pub(super) differs: bool,
+    pub differs: bool,
     /// Uncertainties by column, which take the whole record to compute.
     uncertainties: BTreeMap<String, Result<f64, Reason>>,
 }
@@ -150,10 +151,11 @@ impl Reference {
     /// of an arm with these facts.
     pub(super) fn beside(&self, facts: &Facts, rows: &[f64]) -> Option<Beside<'_>> {
         let Some(exact) = &self.runs.exact else {
-            return Some(Beside { run: Cow::Borrowed(self.finest()?), is_own: false });
+            return Some(Beside { run: Cow::Borrowed(self.finest()?), scales: None });
         };
         let own = Exact::of(&facts.exact, &facts.contacts, facts.end);
-        Some(Beside { is_own: !own.is_alike(exact), run: Cow::Owned(own.beside(rows)) })
+        let scales = (!own.is_alike(exact)).then(|| own.samples());
+        Some(Beside { scales, run: Cow::Owned(own.beside(rows)) })
     }
 
     /// Value of a metric with its uncertainty.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::arm::{Arm, step};
+use super::arm::{Arm, history_every, step};
 use super::manifest::StudyManifest;
 use super::reference::{Level, Reference};
 use super::trajectory::Trajectory;
@@ -50,9 +50,9 @@ impl StudyManifest {
             if named.role.fine {
                 return arm.role.fine && !arm.role.check;
             }
-            let is_coarser = size(arm) >= size(named) && arm.facts.refine <= named.facts.refine;
+            let is_coarser = size(arm) > size(named) && arm.facts.refine <= named.facts.refine;
             let is_alike = !arm.role.fine && arm.case_path == named.case_path && others(arm) == others(named);
-            is_coarser && is_alike
+            arm.name == named.name || is_coarser && is_alike
         };
         let mut found: Vec<usize> = (0..self.arms.len()).filter(|i| is_level(&self.arms[*i])).collect();
         found.sort_by(|a, b| size(&self.arms[*b]).total_cmp(&size(&self.arms[*a])));
@@ -62,11 +62,7 @@ impl StudyManifest {
 
     /// Whether arms have rows between those of a run of the reference.
     fn interpolates(&self, finest: &Arm) -> bool {
-        let every = |arm: &Arm| {
-            let given = arm.case.get("output").and_then(|output| output.get("history_every"));
-            given.and_then(Value::as_f64).unwrap_or(1.0)
-        };
-        let row = |arm: &Arm| Some(every(arm) * step(arm, "time.step")?);
+        let row = |arm: &Arm| Some(history_every(arm) * step(arm, "time.step")?);
         let is_between = |arm: &Arm| {
             let rows = row(arm).zip(row(finest)).map(|(own, known)| own / known);
             rows.is_none_or(|rows| (rows - rows.round()).abs() > SAME * rows)

@@ -25,8 +25,8 @@ pub struct Trajectory {
 pub struct Force {
     /// Values at the rows.
     pub values: Vec<f64>,
-    /// The impulse up to each row: as the time integrator accumulates it, of each of several
-    /// contacts the integral of the values.
+    /// The impulse up to each row, as the time integrator accumulates it; where several contacts
+    /// act, the integral of the values.
     pub impulse: Vec<f64>,
 }
 
@@ -52,13 +52,25 @@ pub(super) fn forces(history: &History, contacts: &[ContactFacts]) -> BTreeMap<S
         };
         return AXES.iter().filter_map(component).collect();
     }
+    let force =
+        |contact: &ContactFacts, axis: &str| history.column(&format!("{}.force_{axis}", contact.name));
+    let touches = |contact: &&ContactFacts| {
+        AXES.iter().filter_map(|axis| force(contact, axis)).flatten().any(|force| *force != 0.0)
+    };
+    let is_alone = contacts.iter().filter(touches).count() == 1;
     let of_contact = |contact: &ContactFacts| {
-        let name = contact.name.clone();
-        AXES.iter().filter_map(move |axis| {
-            let values = history.column(&format!("{name}.force_{axis}"))?.to_vec();
-            let impulse = metrics::integral(history.times(), &values);
-            Some((format!("{name}.{axis}"), Force { values, impulse }))
-        })
+        let component = |axis: &&str| {
+            let values = force(contact, axis)?.to_vec();
+            // The sum that is recorded is that of the only one.
+            let recorded = history.column(&format!("contact_impulse_{axis}"));
+            let recorded = recorded.filter(|_| is_alone && touches(&contact));
+            let impulse = match recorded {
+                Some(impulse) => impulse.to_vec(),
+                None => metrics::integral(history.times(), &values),
+            };
+            Some((format!("{}.{axis}", contact.name), Force { values, impulse }))
+        };
+        AXES.iter().filter_map(component).collect::<Vec<_>>()
     };
     // The force of a side on itself depends on which of two places is secondary.
     let between_bodies =

@@ -8,9 +8,11 @@ use crate::ordered::grouped;
 use crate::plot::{COLORS, Curve, Drawn, Pane, Plot};
 use crate::text::said_if;
 
-/// Errors that are drawn as this one if they are smaller: one method that conserves energy up to
-/// round-off would compress all others.
-const SMALL: f64 = 1e-6;
+/// Errors that are drawn as this one if they are smaller: round-off has no place on an axis of
+/// logarithms.
+const SMALL: f64 = 1e-12;
+/// An uncertainty that is shown.
+const SMALL_UNCERTAINTY: f64 = 1e-6;
 
 /// The style of an arm in all figures: that of its method, where there are methods.
 pub(super) fn style_of(study: &Study, arm: usize) -> usize {
@@ -88,7 +90,8 @@ pub(super) fn plot(study: &Study) -> Option<Plot> {
         curves,
         front,
         y_label: "relative error".into(),
-        floor: (uncertainty > SMALL).then(|| (uncertainty, "uncertainty of the errors".to_owned())),
+        floor: (uncertainty > SMALL_UNCERTAINTY)
+            .then(|| (uncertainty, "uncertainty of the errors".to_owned())),
         ..Pane::default()
     };
     Some(Plot {

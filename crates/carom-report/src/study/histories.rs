@@ -36,7 +36,8 @@ pub(super) fn plots(study: &Study, columns: &[Column], measured: &Measured, time
 /// The reference of a column as a line, and where its value is established, the band of its
 /// uncertainty.
 fn reference_of(reference: &Reference, column: &str) -> Option<(Curve, Option<Band>)> {
-    let (times, values) = reference.column(column).filter(|(times, _)| !times.is_empty())?;
+    let is_shared = !reference.differs;
+    let (times, values) = reference.column(column).filter(|(times, _)| is_shared && !times.is_empty())?;
     let off = reference.band(column);
     let mut y = Vec::new();
     let mut band = Band { name: "uncertainty", x: Vec::new(), low: Vec::new(), high: Vec::new() };

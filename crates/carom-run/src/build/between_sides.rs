@@ -110,8 +110,8 @@ impl Bodies<'_> {
         parts.push(Box::new(others));
         parts.push(Box::new(edges));
         let spec = &self.case.contacts[k];
-        // An overlap that is kept or relaxed is one of nodes, which points between them would close;
-        // springs let in nodes and points alike, and those of both would add up.
+        // An overlap that is kept or relaxed is one of nodes, which points between them would
+        // close; springs let in nodes and points alike, and those of both would add up.
         if spec.overlap == case::Overlap::Refuse && spec.enforcement.is_exact() {
             let [ours, theirs] = &earlier;
             let depths = [primary, secondary].map(|side| self.depth_in(side));

@@ -198,6 +198,32 @@ fn the_sequence_of_changes_decides_no_order() {
     }
 }
 
+#[test]
+fn values_of_the_case_that_an_arm_states_decide_no_order() {
+    let text = format!(
+        "case = \"case.toml\"\nreference = \"exact\"\n\
+         [[arm]]\nname = \"coarse\"\nset = {{ \"time.step\" = 0.02 }}\n\
+         [[arm]]\nname = \"fine\"\nset = {{ \"time.step\" = 0.01, \"newton.tolerance\" = 1e-12 }}\n{ORDERS}"
+    );
+    let (_folder, study) = study_of(&[("case.toml", &spring(3.9, MOTION))], &text);
+    assert!((study.expectations[0].got.unwrap() - 2.0).abs() < 0.01);
+}
+
+/// Rows a quarter apart say nothing of averages over an eighth.
+#[test]
+fn averages_need_rows() {
+    let text = ARMS.replace("trajectory", "force").replace("exact", "fine").replace("[0.02, 0.01]", "[0.02]");
+    let text = format!("window = 0.125\n{text}");
+    let case = row_of_bars(["right.left", "middle.right"]);
+    let thinned = case.replace("output = { ", "output = { history_every = 13, ");
+    let why = |case: &str| {
+        let (_folder, study) = study_of(&[("case.toml", case)], &text);
+        study.ranking.unwrap().apart.into_iter().map(|apart| apart.why).collect::<Vec<_>>()
+    };
+    assert!(why(&case).is_empty());
+    assert!(why(&thinned).iter().all(|why| why.contains("rows 0.26 apart")) && why(&thinned).len() == 2);
+}
+
 /// A bar on a wall, with these units, length, density, modulus and step.
 fn bar(units: [&str; 3], length: f64, density: f64, young: f64, step: f64) -> String {
     let [of_length, of_time, of_mass] = units;

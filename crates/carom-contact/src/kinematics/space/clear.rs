@@ -1,6 +1,6 @@
-//! Whether some point is deeper in a body than it may be, without a search where none can be. With s
-//! the signed distance of a point, positive outside, and a and b the largest motions of the points and
-//! of the body's surface since s was measured,
+//! Whether some point is deeper in a body than it may be, without a search where none can be. With
+//! s the signed distance of a point, positive outside, and a and b the largest motions of the
+//! points and of the body's surface since s was measured,
 //!
 //! ```text
 //! s − a − b > −d    ⇒    no point is deeper than d
@@ -36,7 +36,8 @@ pub(super) struct Clear {
 }
 
 impl Clear {
-    /// Of points with these nodes and weights, which may enter the body with this surface by `depth`.
+    /// Of points with these nodes and weights, which may enter the body with this surface by
+    /// `depth`.
     pub(super) fn new(points: &[Vec<(usize, f64)>], surface: Boundary, depth: f64) -> Self {
         let mut own: Vec<usize> = points.iter().flatten().map(|(node, _)| *node).collect();
         let mut others = surface.nodes().to_vec();

@@ -52,8 +52,8 @@ struct Tools {
 impl EdgePoints {
     /// Points of the sharp edges of the side `own` against the side `other`, which each of them may
     /// enter by `depth`; none if there are no such edges. `earlier`: the nodes of sides whose own
-    /// contacts hold the edges that they share with this one; `reference`: the reference positions of
-    /// all nodes.
+    /// contacts hold the edges that they share with this one; `reference`: the reference positions
+    /// of all nodes.
     pub fn new(
         own: &Boundary,
         other: Boundary,

@@ -1,7 +1,7 @@
 //! Comparison of an arm with the reference: deviations of columns, over all rows and in the smooth
 //! phases before and after the first contact, and its delay.
 
-use carom_record::Facts;
+use carom_record::study::Arm;
 use carom_record::study::compared::{Compared, phase_orders};
 use carom_record::study::reference::{Level, Reference, Trajectory};
 
@@ -20,7 +20,7 @@ fn orders_of_the_phases() {
     let arm = |h: f64| {
         Compared::of(
             &sampled(32, |t| t + if t < 0.5 { h * h } else { h }),
-            &Facts::default(),
+            &Arm::default(),
             &reference,
             Some((0.5, 0.5)),
         )

@@ -88,6 +88,22 @@ fn instants_are_late_by_a_row() {
     assert!((found.uncertainty - after(0.1) - 20.0).abs() < 1e-9);
 }
 
+/// Two levels, 1.2 and 1.1, with a step that is an eighth and a mesh that is twice as fine: the
+/// smaller ratio counts, U = 3 · 0.1/(2 − 1). With one step for both nothing is known.
+#[test]
+fn levels_are_as_fine_as_the_coarser_of_step_and_mesh() {
+    let of = |steps: [f64; 2]| {
+        let level = |step: f64, mesh: f64, value: f64| Level {
+            mesh,
+            ..Level::single(step, with("restitution", value))
+        };
+        let levels = vec![level(steps[0], 1.0, 1.2), level(steps[1], 2.0, 1.1)];
+        Reference::of_levels(String::new(), levels).estimate("restitution")
+    };
+    assert!((of([8.0, 1.0]).unwrap().uncertainty - 0.3).abs() < 1e-9);
+    assert!(of([1.0, 1.0]).is_err());
+}
+
 /// By hand: averaging changes the peak of the finest run from 1.1 to 0.9; 5/4 of that is 0.25.
 #[test]
 fn what_averaging_changes_is_uncertain() {
