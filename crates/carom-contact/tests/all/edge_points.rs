@@ -144,3 +144,41 @@ fn points_that_sink_by_more_than_their_depth_are_held() {
         assert!((rows.row(0).gap + 0.5 * DEPTH).abs() < 1e-14);
     }
 }
+
+/// An edge sinks into a cube and rises again: what was measured before decides nothing.
+#[test]
+fn a_search_that_is_left_out_would_find_nothing() {
+    let corners = (0..8).flat_map(|k| [k & 1, k >> 1 & 1, k >> 2].map(f64::from));
+    let mut start: Vec<f64> = corners.collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let cube = Boundary::new(FacetShape::Q4, &faces.map(Vec::from), &[], 0);
+    assert!(cube.is_whole());
+    // The lower edge of an upside-down roof, along y over the middle of the upper face.
+    start.extend([
+        0.5, -0.2, 1.3, 0.5, 1.2, 1.3, 0.9, 1.2, 1.7, 0.9, -0.2, 1.7, 0.1, 1.2, 1.7, 0.1, -0.2, 1.7,
+    ]);
+    let roof = Boundary::new(FacetShape::Q4, &[vec![8, 9, 10, 11], vec![9, 8, 13, 12]], &[], 0);
+    let points = || EdgePoints::new(&roof, cube.clone(), DEPTH, &BTreeSet::new(), &start).unwrap();
+    let at = |z: f64| -> Vec<f64> {
+        let moved =
+            start.iter().enumerate().map(|(dof, x)| if dof >= 24 && dof % 3 == 2 { x + z } else { *x });
+        moved.collect()
+    };
+    let found = |contact: &EdgePoints, from: f64, to: f64| {
+        let mut pairing = Pairing::default();
+        contact.search(&at(from), &at(to), &mut pairing, &mut Vec::new());
+        pairing.pairs
+    };
+    let known = points();
+    let mut last = 0.0;
+    let mut deepest = 0;
+    for step in 0..80 {
+        let z = -0.17 * (1.0 - (f64::from(step) / 12.0).cos());
+        let pairs = found(&known, last, z);
+        assert_eq!(pairs, found(&points(), last, z), "{step}");
+        assert_eq!(pairs.is_empty(), z > -0.3 - DEPTH, "{step}: {z}");
+        deepest += usize::from(!pairs.is_empty());
+        last = z;
+    }
+    assert!(deepest > 3, "{deepest}");
+}

@@ -222,7 +222,10 @@ scheme = { kind = "static" }
             break error.to_string();
         }
     };
-    assert!(error.contains("did not close its contacts in") || error.contains("prevent it from moving"), "{error}");
+    assert!(
+        error.contains("did not close its contacts in") || error.contains("prevent it from moving"),
+        "{error}"
+    );
 }
 
 /// Where a corner of one side is beside a node of the other, the rows of both are nearly the same,
