@@ -134,8 +134,11 @@ fn continued(frames: &[&Turned], times: &[f64]) -> Vec<f64> {
         let expected = match k.checked_sub(1) {
             None => 0.0,
             Some(before) => {
+                let length = times[k] - times[before];
                 let rate = f64::midpoint(frames[before].rate, frame.rate);
-                angles[before] + rate * (times[k] - times[before])
+                // Rates that change by half a turn say nothing of the time between.
+                let is_steady = (frame.rate - frames[before].rate).abs() * length < 180.0;
+                angles[before] + if is_steady { rate * length } else { 0.0 }
             }
         };
         angles.push(frame.degrees + 360.0 * ((expected - frame.degrees) / 360.0).round());

@@ -17,16 +17,15 @@ pub(crate) fn check(file: &StudyFile, planned: &[Planned], problems: &mut Vec<Pr
     {
         units(key, planned, problems);
     }
-    if file.goal.is_none() {
-        return;
-    }
-    ends(planned, problems);
-    ignored_steps(file, problems);
     let has_formulas = planned.iter().any(|arm| !arm.case.exact.is_empty());
     if file.reference.as_deref() == Some("exact") && !has_formulas {
         let why = "`reference = \"exact\"` compares with the formulas of [exact] in the case";
         let help = "add [exact] to the case, or write `reference = \"fine\"`";
         problems.push(Problem::new("reference", "the case has no exact solution", why, help));
+    }
+    if file.goal.is_some() {
+        ends(planned, problems);
+        ignored_steps(file, problems);
     }
 }
 

@@ -169,6 +169,14 @@ fn a_search_that_is_left_out_would_find_nothing() {
         contact.search(&at(from), &at(to), &mut pairing, &mut Vec::new());
         pairing.pairs
     };
+    // Without its lower face, the cube is not known to be closed, and every search is made.
+    let open = Boundary::new(
+        FacetShape::Q4,
+        &faces[1..].iter().map(|face| face.to_vec()).collect::<Vec<_>>(),
+        &[],
+        0,
+    );
+    let every = || EdgePoints::new(&roof, open.clone(), DEPTH, &BTreeSet::new(), &start).unwrap();
     let known = points();
     let mut last = 0.0;
     let mut deepest = 0;
@@ -176,9 +184,12 @@ fn a_search_that_is_left_out_would_find_nothing() {
         let z = -0.17 * (1.0 - (f64::from(step) / 12.0).cos());
         let pairs = found(&known, last, z);
         assert_eq!(pairs, found(&points(), last, z), "{step}");
+        assert_eq!(pairs.len(), found(&every(), last, z).len(), "{step}");
         assert_eq!(pairs.is_empty(), z > -0.3 - DEPTH, "{step}: {z}");
         deepest += usize::from(!pairs.is_empty());
         last = z;
     }
     assert!(deepest > 3, "{deepest}");
+    // Within one step, through most of the cube.
+    assert_eq!(found(&known, 0.0, -1.2).len(), found(&every(), 0.0, -1.2).len());
 }

@@ -1,6 +1,7 @@
 //! An arm of a study: one variant that is simulated, as stored in the manifest.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::design::Role;
 use crate::Facts;
@@ -83,19 +84,45 @@ fn set<'a>(arm: &'a Arm, key: &str) -> Option<&'a str> {
     arm.sets.iter().rev().find_map(sets)
 }
 
-/// The number of a key in the resolved case; tables in lists have names, and of a list of numbers
-/// the first one counts.
+/// The number of a key in the resolved case; of numbers of cells that of the first direction
+/// counts.
 fn of_case(arm: &Arm, key: &str) -> Option<f64> {
-    let child = |node: &'_ serde_json::Value, part: &str| -> Option<serde_json::Value> {
-        if let Some(list) = node.as_array() {
-            let is_named = |table: &&serde_json::Value| table.get("name").is_some_and(|name| name == part);
-            return list.iter().find(is_named).cloned();
-        }
-        let lists = [part.to_owned(), format!("{part}s"), part.replace("body", "bodies")];
-        lists.iter().find_map(|name| node.get(name)).cloned()
-    };
-    let found = key.split('.').try_fold(arm.case.clone(), |node, part| child(&node, part))?;
-    found.as_array().and_then(|list| list.first()).unwrap_or(&found).as_f64()
+    let found = arm.case.pointer(&pointer(&arm.case, key)?)?;
+    let first = found.as_array().filter(|_| count(key).is_some()).and_then(|list| list.first());
+    first.unwrap_or(found).as_f64()
+}
+
+/// The resolved case of an arm without a key, output, expectations and title.
+pub(super) fn case_without(arm: &Arm, key: &str) -> Value {
+    let mut case = arm.case.clone();
+    let path = pointer(&case, key);
+    if let Some(value) = path.and_then(|path| case.pointer_mut(&path)) {
+        *value = Value::Null;
+    }
+    if let Some(table) = case.as_object_mut() {
+        ["output", "expects", "title"].iter().for_each(|name| _ = table.remove(*name));
+    }
+    case
+}
+
+/// The JSON pointer of a key in a resolved case, where tables in lists have names.
+fn pointer(case: &Value, key: &str) -> Option<String> {
+    let mut path = String::new();
+    for part in key.split('.') {
+        let place = match case.pointer(&path)? {
+            Value::Array(list) => {
+                let is_named = |table: &Value| table.get("name").is_some_and(|name| name == part);
+                list.iter().position(is_named)?.to_string()
+            }
+            table => {
+                let lists = [part.to_owned(), format!("{part}s"), part.replace("body", "bodies")];
+                lists.into_iter().find(|name| table.get(name).is_some())?
+            }
+        };
+        path.push('/');
+        path.push_str(&place);
+    }
+    Some(path)
 }
 
 fn number(text: &str) -> Option<f64> {

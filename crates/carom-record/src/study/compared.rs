@@ -11,6 +11,10 @@ use crate::Reason;
 use crate::metrics::{self, Distance, phase_shift};
 use crate::order::from_errors;
 
+/// Longest row, over the time to average over: averages over less than two rows are not those of
+/// the steps between them.
+const ROWS: f64 = 0.5 * (1.0 + 1e-9);
+
 /// Deviations of a column from that of the reference, relative to the range of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviated {
@@ -72,9 +76,8 @@ impl Compared {
         });
         let row = arm.times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
         let window = |known: &Known| known.windows.first().copied().filter(|window| *window > 0.0);
-        // Averages over less than two rows are not those of the steps between them.
         let lacks_rows =
-            |known: &Known| history_every(of) > 1.0 && window(known).is_some_and(|w| row > 0.5 * w);
+            |known: &Known| history_every(of) > 1.0 && window(known).is_some_and(|w| row > ROWS * w);
         let groups = reference.known.iter().map(|known| {
             if lacks_rows(known) {
                 return None;

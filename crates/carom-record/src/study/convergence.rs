@@ -68,9 +68,12 @@ pub fn converged(sizes: &[f64], values: &[f64]) -> Result<Converged, Reason> {
     if r21 <= 1.0 {
         return Err("step and mesh of its levels are not both refined".into());
     }
-    let ([.., h3, _, _], [.., f3, _, _]) = (sizes, values) else {
-        return Ok(Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None });
-    };
+    let of_two = || Converged { uncertainty: UNSAFE * (f1 - f2).abs() / (r21 - 1.0), order: None };
+    let ([.., h3, _, _], [.., f3, _, _]) = (sizes, values) else { return Ok(of_two()) };
+    // A third run that is no coarser than the second says nothing of the order.
+    if h3 <= h2 {
+        return Ok(of_two());
+    }
     let range = [(f1 - f2).abs(), (f2 - f3).abs(), (f1 - f3).abs()].into_iter().fold(0.0, f64::max);
     if range == 0.0 {
         return Ok(Converged { uncertainty: 0.0, order: None });

@@ -33,11 +33,12 @@ pub(super) struct Exact {
 }
 
 impl Exact {
-    /// The formulas of a case, in t; that of the sum of all contact forces says nothing of contacts
-    /// that do not count as one.
+    /// The formulas of a case, in t; those of the sums of all contact forces and impulses say
+    /// nothing of contacts that do not count as one.
     pub(super) fn of(texts: &BTreeMap<String, String>, contacts: &[ContactFacts], end: f64) -> Self {
         let mut texts = texts.clone();
-        texts.retain(|name, _| metrics::count_as_one(contacts) || !name.starts_with("contact_force_"));
+        let is_sum = |name: &str| name.starts_with("contact_force_") || name.starts_with("contact_impulse_");
+        texts.retain(|name, _| metrics::count_as_one(contacts) || !is_sum(name));
         Self { texts, contacts: contacts.to_vec(), end }
     }
 

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::trajectory::{Force, Trajectory};
+use super::trajectory::Trajectory;
 use crate::metrics::Signal;
 
 /// Kind of a group of columns.
@@ -55,10 +55,7 @@ pub fn groups(run: &Trajectory, bodies: &BTreeMap<String, String>) -> Vec<Group>
         };
         found.entry(key).or_default().push(column.clone());
     }
-    // Of several contacts, those that touch.
-    let touches =
-        |(name, force): &(&String, &Force)| !name.contains('.') || force.values.iter().any(|x| *x != 0.0);
-    let forces: Vec<String> = run.forces.iter().filter(touches).map(|(name, _)| name.clone()).collect();
+    let forces: Vec<String> = run.forces.keys().cloned().collect();
     if !forces.is_empty() {
         found.insert((Kind::Force, "contact force".to_owned()), forces);
     }
@@ -77,6 +74,18 @@ impl Group {
         }
         let values = self.columns.iter().map(|column| run.columns.get(column).map(Vec::as_slice));
         Some(Signal::of(&run.times, values.collect::<Option<Vec<_>>>()?))
+    }
+
+    /// Without the components of contacts that do not touch in a run, of which there are many where
+    /// all pairs of bodies may.
+    #[must_use]
+    pub(super) fn touching(mut self, run: &Trajectory) -> Self {
+        let touches = |name: &String| {
+            let force = run.forces.get(name).filter(|_| self.kind == Kind::Force && name.contains('.'));
+            force.is_none_or(|force| force.values.iter().any(|value| *value != 0.0))
+        };
+        self.columns.retain(touches);
+        self
     }
 
     /// Number of vectors whose components the columns are.

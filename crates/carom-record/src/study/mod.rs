@@ -149,19 +149,20 @@ impl Study {
                 }
             };
             let mut row = Row::of(arm, &run, &manifest.overlays);
+            let of_kind = |of: MemberOf| {
+                let kind = kinds.iter().position(|kind| *kind == of.member)?;
+                Some((kind, &manifest.arms[of.arm].name))
+            };
+            // Claims and expectations refer to the numbers of the record, in its own units.
+            if let Some((kind, name)) = arm.role.member.map_or(Some((0, &arm.name)), of_kind) {
+                records[kind].gather(name, &run, &row.metrics, &needs);
+            }
             systems.convert(i, &mut run, &mut row);
             if i < manifest.arms.len() {
                 visit(i, &run);
             }
             let other = reference.as_ref().filter(|_| row.status == Some(Status::Finished));
             compared.push(other.map(|r| Compared::of(&Trajectory::of(&run, &[]), arm, r, contact)));
-            let of_kind = |of: MemberOf| {
-                let kind = kinds.iter().position(|kind| *kind == of.member)?;
-                Some((kind, &manifest.arms[of.arm].name))
-            };
-            if let Some((kind, name)) = arm.role.member.map_or(Some((0, &arm.name)), of_kind) {
-                records[kind].gather(name, &run, &row.metrics, &needs);
-            }
             rows.push(row);
         }
         let verdicts = manifest

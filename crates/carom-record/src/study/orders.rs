@@ -9,12 +9,11 @@
 //! A reference that differs from the arms only in its step h_r has an error of its own, C h_rᵖ:
 //! then p is that of e₁/e₂ = (h₁ᵖ − h_rᵖ)/(h₂ᵖ − h_rᵖ).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use carom_formula::Formula;
-use serde_json::Value;
 
-use super::arm::{Arm, step};
+use super::arm::{Arm, case_without, step};
 use super::arms::{ArmRecords, Needs};
 use super::manifest::StudyManifest;
 use super::reference::Reference;
@@ -110,25 +109,7 @@ fn changes_beside<'a>(arm: &'a Arm, key: &str) -> Vec<&'a str> {
 /// Whether two arms differ in a key alone, or in nothing, whatever values of the case they state.
 pub(super) fn differ_in(key: &str, arm: &Arm, other: &Arm) -> bool {
     changes_beside(arm, key) == changes_beside(other, key)
-        || arm.case.is_object() && are_equal_beside(key, &arm.case, &other.case)
-}
-
-/// Whether two resolved cases are equal but for a key, output, expectations and titles.
-fn are_equal_beside(key: &str, one: &Value, other: &Value) -> bool {
-    let last = key.rsplit('.').next().unwrap_or(key);
-    let is_apart = |name: &str| name == last || ["output", "expects", "title"].contains(&name);
-    match (one, other) {
-        (Value::Object(one), Value::Object(other)) => {
-            let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
-            names.into_iter().filter(|name| !is_apart(name)).all(|name| {
-                one.get(name).zip(other.get(name)).is_some_and(|(a, b)| are_equal_beside(key, a, b))
-            })
-        }
-        (Value::Array(one), Value::Array(other)) => {
-            one.len() == other.len() && one.iter().zip(other).all(|(a, b)| are_equal_beside(key, a, b))
-        }
-        _ => one == other,
-    }
+        || arm.case.is_object() && case_without(arm, key) == case_without(other, key)
 }
 
 /// The exact solution of an arm at the rows of its record.

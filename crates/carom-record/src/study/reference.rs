@@ -30,7 +30,7 @@ use super::convergence::{converged, converged_by};
 use super::digits::short;
 use super::ensemble::Spread;
 use super::exact::Exact;
-use super::groups::groups;
+use super::groups::{Group, groups};
 pub use super::known::Known;
 use super::known::{ONE_MESH, RESOLVED};
 pub use super::levels::Level;
@@ -117,7 +117,10 @@ impl Reference {
     /// `window`: the time to average over.
     pub fn grouped(mut self, bodies: &BTreeMap<String, String>, window: &Result<f64, Reason>) -> Self {
         let Some(finest) = self.finest() else { return self };
-        let found = groups(finest, bodies).into_iter();
+        let is_exact = self.is_exact();
+        let compared = |group: Group| if is_exact { group } else { group.touching(finest) };
+        let found =
+            groups(finest, bodies).into_iter().map(compared).filter(|group| !group.columns.is_empty());
         self.known = found.filter_map(|group| Known::of(group, &self.runs, window)).collect();
         self
     }
@@ -164,13 +167,13 @@ impl Reference {
     /// The reason why the reference has no such value.
     pub fn estimate(&self, name: &str) -> Result<Estimate, Reason> {
         if self.differs {
-            return Err("the arms have different formulas in [exact]".into());
+            return Err("the arms have different formulas in [exact], or different ends".into());
         }
         if let Some(exact) = &self.runs.exact {
             let value = |level: &Level| level.members.first()?.value(name);
             let values: Option<Vec<f64>> = self.runs.all.iter().map(value).collect();
             let Some([coarse, value]) = values.as_deref() else {
-                return Err("[exact] has no columns to compute it from".into());
+                return Err("[exact] lacks a column that it is computed from, such as `active` for instants of contact".into());
             };
             let uncertainty = (value - coarse).abs() + events(name) * exact.row();
             return Ok(Estimate { value: *value, uncertainty, order: None, spread: 0.0 });

@@ -73,7 +73,8 @@ impl Systems {
         let [from, to] = [run, 0].map(|run| labels(&self.of_runs[run]));
         let mut factor = |unit: &mut String| {
             // What is no unit of the case, as seconds of computation, stays as it is.
-            let Some(known) = from.iter().position(|label| label == unit) else { return Some(1.0) };
+            let known = from.iter().position(|label| label == unit).filter(|_| !unit.is_empty());
+            let Some(known) = known else { return Some(1.0) };
             let factor = units::factor(unit, &to[known]);
             if factor.is_none() {
                 self.unknown.insert(unit.clone());
@@ -108,8 +109,8 @@ impl Systems {
             units => format!(" Values in units that are not known are left out: {}.", units.join(", ")),
         };
         Some(format!(
-            "The arms have different systems of units. All values are in the units of the first arm, \
-             {}.{left_out}",
+            "The arms have different systems of units. Figures and tables are in the units of the first \
+             arm, {}; claims and expectations refer to the numbers of each record.{left_out}",
             self.of_runs[0].join(", ")
         ))
     }

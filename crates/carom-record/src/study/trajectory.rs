@@ -57,7 +57,8 @@ pub(super) fn forces(history: &History, contacts: &[ContactFacts]) -> BTreeMap<S
     let touches = |contact: &&ContactFacts| {
         AXES.iter().filter_map(|axis| force(contact, axis)).flatten().any(|force| *force != 0.0)
     };
-    let is_alone = contacts.iter().filter(touches).count() == 1;
+    let is_known = contacts.iter().all(|contact| AXES.iter().any(|axis| force(contact, axis).is_some()));
+    let is_alone = is_known && contacts.iter().filter(touches).count() == 1;
     let of_contact = |contact: &ContactFacts| {
         let component = |axis: &&str| {
             let values = force(contact, axis)?.to_vec();

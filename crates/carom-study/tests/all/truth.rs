@@ -209,6 +209,24 @@ fn values_of_the_case_that_an_arm_states_decide_no_order() {
     assert!((study.expectations[0].got.unwrap() - 2.0).abs() < 0.01);
 }
 
+/// Two bars, each with its own number of cells: arms that differ in both are no refinement of one.
+#[test]
+fn a_key_of_another_body_makes_another_group() {
+    let case = row_of_bars(["right.left", "middle.right"]);
+    let text = format!(
+        "case = \"case.toml\"\n[grid]\n\"body.left.mesh.cells\" = [10, 20, 40]\n\
+         \"body.right.mesh.cells\" = [20, 40]\n{}",
+        ORDERS.replace("end.ux", "far.ux").replace("time.step", "body.left.mesh.cells")
+    );
+    let (_folder, study) = study_of(&[("case.toml", &case)], &text);
+    assert_eq!(study.expectations.len(), 2);
+    assert!(
+        study.expectations.iter().all(|expectation| expectation.got.is_some()),
+        "{:?}",
+        study.expectations
+    );
+}
+
 /// Rows a quarter apart say nothing of averages over an eighth.
 #[test]
 fn averages_need_rows() {
@@ -250,7 +268,7 @@ velocity = [-1.0]
     )
 }
 
-/// The same bar in m and s, and in mm and ms.
+/// The same bar in m and s, and in mm and ms. Claims refer to the numbers of each record.
 #[test]
 fn arms_are_compared_in_the_units_of_the_first_one() {
     let si = bar(["m", "s", "kg"], 0.1, 1000.0, 1e7, 1e-5);
@@ -264,10 +282,10 @@ name = "mm"
 case = "mm.toml"
 [[claim]]
 text = "durations"
-compare = 'contact_duration of "mm" < 1.001 * contact_duration of "SI"'
+compare = 'contact_duration of "mm" / 1000 < 1.001 * contact_duration of "SI"'
 [[claim]]
 text = "displacements"
-compare = 'min tip.ux of "mm" > 1.001 * min tip.ux of "SI"'
+compare = 'min tip.ux of "mm" / 1000 > 1.001 * min tip.ux of "SI"'
 "#;
     let (_folder, study) = study_of(&[("si.toml", &si), ("mm.toml", &mm)], text);
     let of = |arm: usize, metric: &str| study.rows[arm].value(metric).unwrap();

@@ -6,7 +6,8 @@
 //! s − a − b > −d    ⇒    no point is deeper than d
 //! ```
 //!
-//! A cache: s is measured again where that does not tell, and the answer is the same.
+//! s is measured again where that does not tell, so that the answer depends on positions alone. A
+//! point that moves by d or more within a step is not left out: it may have passed through a part.
 
 use carom_algebra::Vector;
 
@@ -58,9 +59,20 @@ impl Clear {
         }
     }
 
+    /// Whether no point moves by the depth in a step: one that does may pass through a part of the
+    /// body.
+    pub(super) fn is_slow(&self, [before, now]: [&[f64]; 2]) -> bool {
+        let start = |side: usize, k: usize| place(before, self.nodes[side][k]);
+        self.relative(now, start) < self.depth
+    }
+
     /// Whether no point can be too deep, as far as motion tells.
     pub(super) fn holds(&self, y: &[f64]) -> bool {
-        self.least - self.motion(y) > -SURE * self.depth
+        let measured = |side: usize, k: usize| {
+            let places = self.measured[side].as_chunks::<3>().0;
+            places.get(k).map_or(Vector([f64::NAN; 3]), |place| Vector(*place))
+        };
+        self.least - self.relative(y, measured) > -SURE * self.depth
     }
 
     /// Measures whether none of the points is too deep; `points`: their positions, at those of all
@@ -70,7 +82,8 @@ impl Clear {
         self.least = f64::INFINITY;
         for (point, near) in points.zip(&mut self.near) {
             let Some(found) = self.surface.depth(*point, *near, y) else { continue };
-            self.least = self.least.min(found.distance);
+            let is_known = found.distance.is_finite();
+            self.least = if is_known { self.least.min(found.distance) } else { f64::NEG_INFINITY };
             *near = Some(found.facet);
         }
         for (places, nodes) in self.measured.iter_mut().zip(&self.nodes) {
@@ -80,17 +93,17 @@ impl Clear {
         self.least > -self.depth
     }
 
-    /// Bound of the relative motion of points and surface since distances were measured.
-    fn motion(&self, y: &[f64]) -> f64 {
-        let [own, others] = &self.measured;
-        let Some(first) = others.first_chunk::<3>() else { return f64::INFINITY };
+    /// Bound of the relative motion of points and surface to positions `y` from others of the
+    /// nodes, by side and number; infinite where one is not known.
+    fn relative(&self, y: &[f64], from: impl Fn(usize, usize) -> Vector<3>) -> f64 {
+        let Some(first) = self.nodes[1].first() else { return f64::INFINITY };
         // In the frame of a node of the surface: what all of them move has no part in it.
-        let drift = place(y, self.nodes[1][0]) - Vector(*first);
-        let largest = |nodes: &[usize], known: &[f64]| {
-            let moved =
-                |(node, known): (&usize, &[f64; 3])| (place(y, *node) - Vector(*known) - drift).norm();
-            nodes.iter().zip(known.as_chunks::<3>().0).map(moved).fold(0.0, f64::max)
+        let drift = place(y, *first) - from(1, 0);
+        let largest = |side: usize| {
+            let moved = |(k, node): (usize, &usize)| (place(y, *node) - from(side, k) - drift).norm();
+            let nodes = self.nodes[side].iter().enumerate();
+            nodes.map(moved).fold(0.0, |most: f64, x| if x.is_finite() { most.max(x) } else { f64::INFINITY })
         };
-        self.factors[0] * largest(&self.nodes[0], own) + self.factors[1] * largest(&self.nodes[1], others)
+        self.factors[0] * largest(0) + self.factors[1] * largest(1)
     }
 }

@@ -188,7 +188,10 @@ impl Kinematics for EdgePoints {
     ) -> bool {
         let Tools { places: [start, end], clear } =
             &mut *self.tools.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut clear = clear.as_mut().filter(|_| pairing.pairs.is_empty());
+        // The searches that were left out are unknown to the memory of the last one.
+        pairing.fresh |= pairing.pairs.is_empty();
+        let mut clear =
+            clear.as_mut().filter(|clear| pairing.pairs.is_empty() && clear.is_slow([before, now]));
         if clear.as_ref().is_some_and(|clear| clear.holds(now)) {
             return false;
         }

@@ -253,9 +253,16 @@ impl NodeToPatch {
     fn next_facet(&self, pair: &Pair, came_from: Option<usize>, y: &[f64]) -> Next {
         let xi = [pair.xi, pair.eta];
         let patch = self.primary.patch(pair.facet);
-        // A pair with all facets of a joint slides on any of them.
-        let past = if pair.joint.is_some() { HAND_OVER } else { PAST };
-        if patch.furthest(xi) <= past {
+        // A pair with all facets of a joint slides on any of them, but not past their other edges.
+        let corners = patch.corners();
+        let is_of_joint = |edge: usize| {
+            pair.joint.map(usize::from).is_some_and(|joint| match joint.checked_sub(corners) {
+                Some(own) => edge == own,
+                None => edge == joint || (edge + 1) % corners == joint,
+            })
+        };
+        let tolerance = |edge: usize| if is_of_joint(edge) { HAND_OVER } else { PAST };
+        if (0..corners).zip(patch.beyond(xi)).all(|(edge, beyond)| beyond <= tolerance(edge)) {
             return Next::Stay;
         }
         let node = self.secondary[pair.node];
@@ -447,15 +454,22 @@ impl Kinematics for NodeToPatch {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let starts = pairing.fresh;
-        let left = if starts {
+        let mut left = if starts {
             // A pair over a joint does not slide to another facet of it.
             self.start_joints(&mut pairing.pairs, before);
             Vec::new()
         } else {
             self.leave_joints(&mut pairing.pairs, now)
         };
-        let slid =
-            self.slide([before, now], pairing, events) | self.take_joints(&mut pairing.pairs, &left, now);
+        let on_joints = |pairs: &[Pair]| -> Vec<usize> {
+            pairs.iter().filter(|pair| pair.joint.is_some()).map(|pair| pair.node).collect()
+        };
+        let known = on_joints(&pairing.pairs);
+        let has_slid = self.slide([before, now], pairing, events);
+        // A node that slides along an edge goes on along the next one.
+        let kept = on_joints(&pairing.pairs);
+        left.extend(known.into_iter().filter(|node| !kept.contains(node)));
+        let slid = has_slid | self.take_joints(&mut pairing.pairs, &left, now);
         if starts {
             self.start_joints(&mut pairing.pairs, before);
         }
