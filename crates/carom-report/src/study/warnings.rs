@@ -63,7 +63,7 @@ pub(super) fn section(study: &Study, origins: &[Origin]) -> Markup {
                         td {
                             @if warning.place != "the run" { (typeset(&warning.place)) ": " }
                             (Label(&typeset(&warning.what)))
-                            @if same.len() > 1 { " (" (study.rows[arms[0]].name) "; similar in the others)" }
+                            @if same.len() > 1 { " (" (study.rows[arms[0]].name) "; with other numbers in the others)" }
                             "; " (typeset(&warning.why)) "."
                         }
                         td { (Prose(&typeset(&warning.advice))) } td { (names(study, &arms)) }

@@ -80,7 +80,7 @@ fn warn(study: &Study) {
         let mut arms: Vec<usize> = same.iter().flat_map(|(_, arms)| arms.clone()).collect();
         if same.len() > 1 {
             let first = &study.rows[arms[0]].name;
-            warning.what = format!("{} (\"{first}\"; similar in the others)", warning.what);
+            warning.what = format!("{} (\"{first}\"; with other numbers in the others)", warning.what);
         }
         arms.sort_unstable();
         console::say(console::warning("warning: ", &of_arms(&arms, &study.manifest), &warning));
