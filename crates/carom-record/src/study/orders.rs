@@ -277,7 +277,7 @@ fn size<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// What an expected order is computed from.
+/// An expected order, with the records and the reference that it is computed from.
 struct Observed<'a> {
     expect: &'a Expect,
     order: &'a OrderOf,

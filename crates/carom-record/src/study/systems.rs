@@ -72,7 +72,7 @@ impl Systems {
         }
         let [from, to] = [run, 0].map(|run| labels(&self.of_runs[run]));
         let mut factor = |unit: &mut String| {
-            // What is no unit of the case, as seconds of computation, stays as it is.
+            // A label that is no unit of the case, as of seconds of computation, stays as it is.
             let known = from.iter().position(|label| label == unit).filter(|_| !unit.is_empty());
             let Some(known) = known else { return Some(1.0) };
             let factor = units::factor(unit, &to[known]);

@@ -268,7 +268,7 @@ velocity = [-1.0]
     )
 }
 
-/// The same bar in m and s, and in mm and ms. Claims refer to the numbers of each record.
+/// A bar in m and s, and the same in mm and ms. Claims refer to the numbers of each record.
 #[test]
 fn arms_are_compared_in_the_units_of_the_first_one() {
     let si = bar(["m", "s", "kg"], 0.1, 1000.0, 1e7, 1e-5);

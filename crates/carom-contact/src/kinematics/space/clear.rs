@@ -37,7 +37,7 @@ pub(super) struct Clear {
 }
 
 impl Clear {
-    /// Of points with these nodes and weights, which may enter the body with this surface by
+    /// For points with these nodes and weights, which may enter the body with this surface by
     /// `depth`.
     pub(super) fn new(points: &[Vec<(usize, f64)>], surface: Boundary, depth: f64) -> Self {
         let mut own: Vec<usize> = points.iter().flatten().map(|(node, _)| *node).collect();
