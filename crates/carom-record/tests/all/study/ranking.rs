@@ -257,7 +257,8 @@ fn errors_in_common_do_not_hide_a_difference() {
     );
 }
 
-/// Differences that no sample has seen: errors of 0.06 and 0.21 beside an exact reference are not the same.
+/// Differences that no sample has seen: errors of 0.06 and 0.21 beside an exact reference are not
+/// the same.
 #[test]
 fn places_follow_from_errors_that_samples_miss() {
     let unseen = |error: f64| Errors { error, vector: vec![0.0; 8], noise: None };
