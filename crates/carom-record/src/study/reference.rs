@@ -296,6 +296,9 @@ impl Reference {
     /// levels, scaled to the uncertainty of the column.
     pub fn band(&self, column: &str) -> Vec<f64> {
         let Some((times, values)) = self.column(column) else { return Vec::new() };
+        if self.is_exact() {
+            return vec![0.0; times.len()];
+        }
         let before = self.runs.all.iter().rev().nth(1).and_then(|level| level.members.first());
         let other = before.and_then(|run| Some((&run.times, run.columns.get(column)?)));
         let last = self.deviations(column).and_then(|(apart, _)| apart.last().copied());

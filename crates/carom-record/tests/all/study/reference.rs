@@ -156,6 +156,7 @@ fn metrics_of_exact_formulas() {
     let reference = Reference::of_formulas(&formulas, &[], 2.0);
     let value = |name: &str| reference.metric(name).unwrap();
     assert_eq!(value("peak_force"), Established { value: 300.0, uncertainty: 0.0 });
+    assert!(reference.band("contact_force_x").iter().all(|off| *off == 0.0));
     assert!((value("impulse_x").value - 200.0).abs() < 1e-9);
     assert!(reference.metric("apex").is_err());
 }
