@@ -27,8 +27,9 @@ pub struct Independent {
 pub enum Plane {
     /// Both rows depend on earlier ones.
     Nothing,
-    /// One combination is independent: i times the first row and j times the second one, where i² +
-    /// j² = 1. The one across it, i times the second row less j times the first, is not.
+    /// One combination of the two rows is independent: i times the first row and j times the second
+    /// one, where i² + j² = 1. The one across it, i times the second row less j times the first, is
+    /// not.
     Line([f64; 2]),
     /// Both rows are independent.
     All,

@@ -90,7 +90,7 @@ fn thinned(count: usize, stride: usize) -> impl Iterator<Item = usize> {
 pub(crate) struct Turned {
     /// Angle in degrees, up to whole turns.
     pub(crate) degrees: f64,
-    /// Its rate; zero where no velocities are recorded.
+    /// Angular velocity in degrees per unit of time; zero where no velocities are recorded.
     pub(crate) rate: f64,
 }
 
@@ -425,7 +425,7 @@ impl Tools<'_> {
 mod tests {
     use super::{Turned, continued};
 
-    /// One and a quarter turns from frame to frame, forwards and backwards.
+    /// A body that turns by 450° from one frame to the next, forwards and backwards.
     #[test]
     fn angles_go_on_beyond_whole_turns() {
         for sign in [1.0, -1.0] {
