@@ -233,9 +233,8 @@ impl Boundary {
     /// by more than a tolerance relative to the length of a facet. Where that surface ends at a
     /// corner of the facet, and at none of its edges, the facet alone does not show it.
     pub(super) fn is_past_rim(&self, facet: usize, point: Vector<3>, tolerance: f64, y: &[f64]) -> bool {
-        let normal = self.middle(facet, y).normal;
         let is_of_surface = |other: usize| {
-            self.is_of_side(other) && !self.is_mirror(other) && self.is_smooth(other, normal, y)
+            self.is_of_side(other) && !self.is_mirror(other) && self.is_smooth(facet, other, y)
         };
         let around = self.ring(facet).iter().copied().filter(|&other| is_of_surface(other));
         let found = |facet: usize| (facet, self.patch(facet).nearest(y, point));
@@ -269,19 +268,36 @@ impl Boundary {
     /// continues the smooth surface.
     fn ends_at_rim(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> bool {
         let corner = if s > 0.0 { (edge + 1) % self.shape.corners() } else { edge };
-        let normal = self.middle(facet, y).normal;
         let beside = self.across(facet, edge);
         let continues = |&other: &usize| {
             let is_surface = self.is_of_side(other) && !self.is_mirror(other);
-            other != facet && Some(other) != beside && is_surface && self.is_smooth(other, normal, y)
+            other != facet && Some(other) != beside && is_surface && self.is_smooth(facet, other, y)
         };
         !self.around(facet, corner).iter().any(continues)
     }
 
-    /// Whether two facets form a smooth surface, but for a small kink; `normal`: that of the first
-    /// one in its middle.
-    pub(super) fn is_smooth(&self, other: usize, normal: Vector<3>, y: &[f64]) -> bool {
-        normal.dot(&self.middle(other, y).normal) > SHARP
+    /// Whether two facets with a common corner form a smooth surface, but for a small kink where
+    /// they meet.
+    pub(super) fn is_smooth(&self, facet: usize, other: usize, y: &[f64]) -> bool {
+        let [here, there] = self.normals_where_met(facet, other, y);
+        here.dot(&there) > SHARP
+    }
+
+    /// Normals of two facets where they meet: in the middle of their common edge, or at the corner.
+    fn normals_where_met(&self, facet: usize, other: usize, y: &[f64]) -> [Vector<3>; 2] {
+        let corners = self.shape.corners();
+        if let Some(edge) = (0..corners).find(|&edge| self.across(facet, edge) == Some(other)) {
+            return self.normals_at_edge(facet, edge, 0.5, y);
+        }
+        let [own, met] = [facet, other].map(|facet| self.patch(facet));
+        let at = |patch: &Patch, corner: usize| patch.at(y, patch.along(corner, 0.0)).normal;
+        for corner in 0..corners {
+            let node = own.nodes[corner];
+            if let Some(same) = met.nodes[..corners].iter().position(|&other| other == node) {
+                return [at(&own, corner), at(&met, same)];
+            }
+        }
+        [facet, other].map(|facet| self.middle(facet, y).normal)
     }
 
     /// The facets that share a corner with a facet, without itself, ascending.
@@ -319,13 +335,13 @@ impl Boundary {
         here.dot(&there) < SHARP && cross(here, there).dot(&along) > 0.0
     }
 
-    /// The facets that share a corner with a facet and bend away from it by more than 30°.
+    /// The facets that share a corner with a facet and bend away from it there by more than 30°.
     pub(super) fn bent_away(&self, facet: usize, y: &[f64]) -> impl Iterator<Item = usize> {
         let here = self.middle(facet, y);
         self.ring(facet).iter().copied().filter(move |&other| {
             let there = self.middle(other, y);
             let way = there.position - here.position;
-            here.normal.dot(&there.normal) < SHARP
+            !self.is_smooth(facet, other, y)
                 && way.dot(&here.normal) < 0.0
                 && way.dot(&there.normal) > 0.0
         })

@@ -239,12 +239,12 @@ impl NodeToPatch {
     }
 
     /// Whether a node whose closest point on a facet is on an edge may have a pair with it: just
-    /// past the rim, where the facet continues one with this normal, or over a joint, along which
+    /// past the rim, where the facet continues the pair's own one, or over a joint, along which
     /// it slides from one facet to the next.
-    fn lies_on_edge(&self, facet: usize, edge: usize, normal: Vector<3>, from: Vector<3>, y: &[f64]) -> bool {
+    fn lies_on_edge(&self, own: usize, facet: usize, edge: usize, from: Vector<3>, y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         let is_beside = self.primary.is_rim(facet, edge, y)
-            && self.primary.is_smooth(facet, normal, y)
+            && self.primary.is_smooth(own, facet, y)
             && patch.closest_point(y, from, PAST_SIDE).is_some();
         is_beside || self.is_blunt(facet, (patch.corners() + edge) as u8, y)
     }
@@ -271,7 +271,6 @@ impl NodeToPatch {
         }
         let from = place(y, node);
         let own = patch.nearest(y, from);
-        let normal = self.primary.middle(pair.facet, y).normal;
         let mut best = None;
         for &facet in self.primary.ring(pair.facet) {
             if self.primary.is_mirror(facet) || !self.may_take(node, facet, y) {
@@ -281,7 +280,7 @@ impl NodeToPatch {
             let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
             let lies_on = || match found.at {
                 Feature::Inside => true,
-                Feature::Edge(edge) => self.lies_on_edge(facet, edge, normal, from, y),
+                Feature::Edge(edge) => self.lies_on_edge(pair.facet, facet, edge, from, y),
                 Feature::Corner(_) => false,
             };
             if found.distance < least && lies_on() {
