@@ -55,7 +55,7 @@ pub(super) fn settle(
             let along = direction[0] * u + direction[1] * v;
             worth[i] = if radius > 0.0 { along.max(0.0) / radius } else { f64::INFINITY };
         }
-        let Solution { z: exact, turns } = solve(a, b, kinds, states, &worth)?;
+        let Solution { z: exact, turns } = solve(a, b, kinds, states, &worth, &now)?;
         let radius = |i: usize| match (kinds[i], states[i]) {
             (Kind::Tangential { limit, .. }, State::Slips(_, true)) => limit,
             (Kind::Tangential { of, coefficient, .. }, _) => coefficient * exact[of],
@@ -157,8 +157,17 @@ impl Reduced {
     }
 }
 
-/// Solves the linear problem for given states; none if the solution is not finite.
-fn solve(a: &[f64], b: &[f64], kinds: &[Kind], states: &[State], worth: &[f64]) -> Option<Solution> {
+/// Solves the linear problem for given states; none if the solution is not finite. What is solved
+/// for is the difference to the forces `from`: of rows that depend on each other the forces
+/// themselves are known to few digits.
+fn solve(
+    a: &[f64],
+    b: &[f64],
+    kinds: &[Kind],
+    states: &[State],
+    worth: &[f64],
+    from: &[f64],
+) -> Option<Solution> {
     let n = kinds.len();
     let Reduced { forces, motions, names, diagonal, fixed } = Reduced::new(a, kinds, states, worth);
     let size = names.len();
@@ -170,16 +179,22 @@ fn solve(a: &[f64], b: &[f64], kinds: &[Kind], states: &[State], worth: &[f64]) 
         along(&motions[r], &moved)
     });
     (0..size).for_each(|i| matrix[(i, i)] += diagonal[i]);
-    let known = |row: usize| b[row] + (0..n).map(|j| a[row * n + j] * fixed[j]).sum::<f64>();
-    let mut right = Mat::from_fn(size, 1, |r, _| -along(&motions[r], &known));
+    let first: Vec<f64> = names.iter().map(|&(i, across)| if across { 0.0 } else { from[i] }).collect();
+    let mut known = fixed.clone();
+    for (force, value) in forces.iter().zip(&first) {
+        force.iter().for_each(|&(j, factor)| known[j] += factor * value);
+    }
+    let moved = |row: usize| b[row] + (0..n).map(|j| a[row * n + j] * known[j]).sum::<f64>();
+    let mut right = Mat::from_fn(size, 1, |r, _| -along(&motions[r], &moved));
     matrix.partial_piv_lu().solve_in_place(right.as_mut());
     let mut z = fixed;
     let mut turns = Vec::new();
     for (r, &(i, across)) in names.iter().enumerate() {
+        let value = first[r] + right[(r, 0)];
         if across {
-            turns.push((i, right[(r, 0)]));
+            turns.push((i, value));
         } else {
-            forces[r].iter().for_each(|&(j, factor)| z[j] = factor * right[(r, 0)]);
+            forces[r].iter().for_each(|&(j, factor)| z[j] = factor * value);
         }
     }
     z.iter().all(|value| value.is_finite()).then_some(Solution { z, turns })

@@ -37,8 +37,8 @@ pub struct Cone<'a> {
     /// Law of each unknown force.
     pub kinds: &'a [Kind],
     /// Whether A is singular, because rows of contacts depend on each other. The solution is then
-    /// that of a proximal step from the guess: ε D_ii is added to the diagonal and −ε D_ii z_i to
-    /// b, ε = 1e-10. Each inequality still counts, and repeated steps converge to a solution of the
+    /// that of a proximal step from the guess, with friction from the forces that the sweeps find:
+    /// ε D_ii is added to the diagonal and −ε D_ii z_i to b, ε = 1e-10. Each inequality still counts, and repeated steps converge to a solution of the
     /// problem itself.
     pub is_dependent: bool,
 }
@@ -63,6 +63,9 @@ impl Cone<'_> {
     pub fn solve(self, z: &mut Vec<f64>) -> Result<(), LinearError> {
         let n = self.right.len();
         z.resize(n, 0.0);
+        if self.kinds.iter().any(|kind| *kind != Kind::Normal) {
+            return sweeps::coulomb(self.matrix, self.right, self.kinds, z, self.is_dependent);
+        }
         if self.is_dependent {
             for i in 0..n {
                 let diagonal = self.matrix.at(i, i);
@@ -71,10 +74,6 @@ impl Cone<'_> {
                 self.right[i] -= near * z[i];
             }
         }
-        if self.kinds.iter().all(|kind| *kind == Kind::Normal) {
-            pivoting::complementarity(self.matrix, self.right, z)
-        } else {
-            sweeps::coulomb(self.matrix, self.right, self.kinds, z)
-        }
+        pivoting::complementarity(self.matrix, self.right, z)
     }
 }

@@ -13,10 +13,10 @@
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
 //! ```
 
-use super::Couplings;
 use super::exact::{State, second, settle};
 use super::kind::Kind;
 use super::pivoting;
+use super::{Couplings, PROXIMAL};
 use crate::linear::LinearError;
 use crate::sums::max_abs;
 
@@ -56,7 +56,13 @@ fn radius(coefficient: f64, limit: f64, normal: f64) -> (f64, bool) {
 ///
 /// # Errors
 /// If none is found, as for large μ, where there may be none.
-pub fn coulomb(a: &Couplings, b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Result<(), LinearError> {
+pub fn coulomb(
+    a: &Couplings,
+    b: &[f64],
+    kinds: &[Kind],
+    z: &mut Vec<f64>,
+    is_dependent: bool,
+) -> Result<(), LinearError> {
     let n = kinds.len();
     let normal = |j: usize| match kinds[j] {
         Kind::Tangential { of, .. } => Some(of),
@@ -94,7 +100,14 @@ pub fn coulomb(a: &Couplings, b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Re
                 row[place(j)] = value;
             }
         }
-        let right: Vec<f64> = members.iter().map(|&i| b[i]).collect();
+        let mut solution: Vec<f64> = members.iter().map(|&i| z[i]).collect();
+        let mut right: Vec<f64> = members.iter().map(|&i| b[i]).collect();
+        let mut near = vec![0.0; members.len()];
+        for k in (0..members.len()).filter(|_| is_dependent) {
+            near[k] = PROXIMAL * part[k * (members.len() + 1)];
+            part[k * (members.len() + 1)] += near[k];
+            right[k] -= near[k] * solution[k];
+        }
         let local = |&i: &usize| match kinds[i] {
             Kind::Tangential { of, coefficient, limit } => {
                 Kind::Tangential { of: place(of), coefficient, limit }
@@ -102,8 +115,8 @@ pub fn coulomb(a: &Couplings, b: &[f64], kinds: &[Kind], z: &mut Vec<f64>) -> Re
             Kind::Normal => Kind::Normal,
         };
         let of_part: Vec<Kind> = members.iter().map(local).collect();
-        let mut solution: Vec<f64> = members.iter().map(|&i| z[i]).collect();
-        Coupled { a: &part, b: &right, kinds: &of_part }.solve(&mut solution)?;
+        let guess = solution.clone();
+        Coupled { a: &part, b: &right, kinds: &of_part, near: &near, guess: &guess }.solve(&mut solution)?;
         members.iter().zip(solution).for_each(|(&i, value)| z[i] = value);
     }
     Ok(())
@@ -115,6 +128,10 @@ struct Coupled<'a> {
     a: &'a [f64],
     b: &'a [f64],
     kinds: &'a [Kind],
+    /// Addition of the proximal step to the diagonal.
+    near: &'a [f64],
+    /// Forces from which the proximal step begins.
+    guess: &'a [f64],
 }
 
 impl Coupled<'_> {
@@ -151,11 +168,16 @@ impl Coupled<'_> {
         obeys.then_some(exact)
     }
 
-    /// The exact solution for the states of these forces, and whether it obeys the law.
+    /// The exact solution for the states of these forces, and whether it obeys the law; that of a
+    /// proximal step which begins from these forces.
     fn exact(&self, z: &[f64]) -> Option<(Vec<f64>, bool)> {
-        let mut states: Vec<State> = (0..self.kinds.len()).map(|i| self.state(z, i)).collect();
-        let exact = settle(self.a, self.b, self.kinds, &mut states, z)?;
-        let obeys = self.obeys(&exact, &states);
+        let n = self.kinds.len();
+        let mut states: Vec<State> = (0..n).map(|i| self.state(z, i)).collect();
+        let right: Vec<f64> = (0..n).map(|i| self.b[i] + self.near[i] * (self.guess[i] - z[i])).collect();
+        let exact = settle(self.a, &right, self.kinds, &mut states, z)?;
+        let Self { a, kinds, near, .. } = *self;
+        let of_these = Coupled { a, b: &right, kinds, near, guess: z };
+        let obeys = of_these.obeys(&exact, &states);
         Some((exact, obeys))
     }
 

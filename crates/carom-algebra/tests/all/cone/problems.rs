@@ -124,3 +124,52 @@ fn a_node_on_three_surfaces_of_one_edge_obeys_the_law() {
     }
     assert!((1..40).contains(&sticks), "{sticks}");
 }
+
+/// An edge of two nodes and three points between them over a plane: the rows of the points are
+/// means of those of the nodes. Of the nodes' forces friction is as large as pressure.
+#[test]
+fn points_between_the_nodes_of_an_edge_obey_the_law() {
+    let normal = [0.48, 0.6, 0.64];
+    let tangents = [[0.8, 0.0, -0.6], [0.36, -0.8, 0.48]];
+    let of_node = |node: usize, along: [f64; 3]| -> [f64; 6] {
+        std::array::from_fn(|dof| if dof / 3 == node { along[dof % 3] } else { 0.0 })
+    };
+    let shares = [0.25, 0.5, 0.75];
+    let point = |share: f64| -> [f64; 6] {
+        std::array::from_fn(|dof| normal[dof % 3] * if dof < 3 { 1.0 - share } else { share })
+    };
+    let mut rows = vec![of_node(0, normal), of_node(1, normal)];
+    rows.extend(shares.map(point));
+    rows.extend([0, 0, 1, 1].iter().zip([0, 1, 0, 1]).map(|(&node, along)| of_node(node, tangents[along])));
+    let rough = |of| Kind::Tangential { of, coefficient: 1.0, limit: f64::INFINITY };
+    let kinds = [[Kind::Normal; 5].as_slice(), &[rough(0), rough(0), rough(1), rough(1)]].concat();
+    let n = rows.len();
+    // A body couples its nodes: inverse masses along and across.
+    let moved = |dof: usize, force: &[f64; 6]| 900.0 * force[dof] + 650.0 * force[(dof + 3) % 6];
+    let matrix: Vec<f64> = (0..n * n)
+        .map(|e| (0..6).map(|dof| rows[e / n][dof] * moved(dof, &rows[e % n])).sum::<f64>())
+        .collect();
+    for case in 0..200 {
+        let wave = |k: usize| (f64::from(case) * 1.7 + k as f64 * 2.3).sin();
+        let free: [f64; 6] = std::array::from_fn(|dof| 20.0 * wave(dof) - 15.0 * normal[dof % 3]);
+        let right: Vec<f64> =
+            rows.iter().map(|row| (0..6).map(|dof| row[dof] * free[dof]).sum::<f64>()).collect();
+        let mut z = Vec::new();
+        let couplings = &mut Couplings::dense(n, matrix.clone());
+        Cone { matrix: couplings, right: &mut right.clone(), kinds: &kinds, is_dependent: true }
+            .solve(&mut z)
+            .unwrap_or_else(|error| panic!("{case}: {error}"));
+        let u: Vec<f64> =
+            (0..n).map(|i| right[i] + (0..n).map(|j| matrix[i * n + j] * z[j]).sum::<f64>()).collect();
+        for i in 0..5 {
+            assert!(z[i] >= 0.0 && u[i] >= -1e-7 && z[i] * u[i].abs() < 1e-8, "{case}: {z:?} {u:?}");
+        }
+        for (of, i) in [(0, 5), (1, 7)] {
+            let force = z[i].hypot(z[i + 1]);
+            let slip = u[i].hypot(u[i + 1]);
+            assert!(force <= z[of] * (1.0 + 1e-9), "{case}: {z:?}");
+            let power = z[i] * u[i] + z[i + 1] * u[i + 1];
+            assert!((power + z[of] * slip).abs() < 1e-7, "{case}: {z:?} {u:?}");
+        }
+    }
+}

@@ -18,7 +18,7 @@ fn every_state_obeys_the_law() {
         let b: Vec<f64> = (0..4).map(|i| (f64::from(k) * 1.7 + f64::from(i) * 2.3).sin() * 3.0).collect();
         let mut z = Vec::new();
         let limit = if k % 2 == 0 { f64::INFINITY } else { 0.2 };
-        coulomb(&Couplings::dense(4, A.to_vec()), &b, &KINDS(0.4, limit), &mut z).unwrap();
+        coulomb(&Couplings::dense(4, A.to_vec()), &b, &KINDS(0.4, limit), &mut z, false).unwrap();
         let u: Vec<f64> = (0..4).map(|i| b[i] + (0..4).map(|j| A[i * 4 + j] * z[j]).sum::<f64>()).collect();
         for i in 0..2 {
             let p = z[i];
@@ -83,7 +83,7 @@ fn vectors(change: impl Fn(&mut [f64; 36], &mut [f64])) {
         }
         change(&mut a, &mut b);
         let mut z = Vec::new();
-        coulomb(&Couplings::dense(6, a.to_vec()), &b, &kinds, &mut z).unwrap();
+        coulomb(&Couplings::dense(6, a.to_vec()), &b, &kinds, &mut z, false).unwrap();
         let u: Vec<f64> = (0..6).map(|i| b[i] + (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
         for i in 0..2 {
             let [q, v] = [&z, &u].map(|values| [values[2 + 2 * i], values[3 + 2 * i]]);
@@ -143,7 +143,7 @@ fn vectors_settle_beside_one_without_a_force() {
         let u = [0.0, 0.0, v[0][0], v[0][1], v[1][0], v[1][1]];
         let b: Vec<f64> = (0..6).map(|i| u[i] - (0..6).map(|j| a[i * 6 + j] * z[j]).sum::<f64>()).collect();
         let mut found = Vec::new();
-        coulomb(&Couplings::dense(6, a.to_vec()), &b, &kinds, &mut found).unwrap();
+        coulomb(&Couplings::dense(6, a.to_vec()), &b, &kinds, &mut found, false).unwrap();
         for i in 0..6 {
             assert!((found[i] - z[i]).abs() < 1e-11, "{k}: {found:?} {z:?}");
         }
@@ -155,7 +155,7 @@ fn without_friction_it_is_the_complementarity_of_normal_forces() {
     let b = [-1.0, 0.5, 2.0, -0.3];
     let mut z = Vec::new();
     let mut normal = Vec::new();
-    coulomb(&Couplings::dense(4, A.to_vec()), &b, &KINDS(0.0, f64::INFINITY), &mut z).unwrap();
+    coulomb(&Couplings::dense(4, A.to_vec()), &b, &KINDS(0.0, f64::INFINITY), &mut z, false).unwrap();
     let normals = Couplings::dense(2, vec![4.0, 1.0, 1.0, 3.0]);
     complementarity(&normals, &b[..2], &mut normal).unwrap();
     assert!((z[0] - normal[0]).abs() < 1e-15 && (z[1] - normal[1]).abs() < 1e-15);
@@ -181,7 +181,7 @@ fn forces_of_dependent_rows_drift_to_the_solution() {
         let b: Vec<f64> =
             rows.iter().zip([0.0, 0.0, 1.1, 0.4]).map(|(row, more)| along(row) + more).collect();
         let mut z = Vec::new();
-        coulomb(&Couplings::dense(4, a.clone()), &b, &KINDS(0.3, f64::INFINITY), &mut z).unwrap();
+        coulomb(&Couplings::dense(4, a.clone()), &b, &KINDS(0.3, f64::INFINITY), &mut z, false).unwrap();
         let u: Vec<f64> = (0..4).map(|i| b[i] + (0..4).map(|j| a[i * 4 + j] * z[j]).sum::<f64>()).collect();
         for i in 0..2 {
             assert!(z[i] >= 0.0 && u[i] >= -1e-8 && z[i] * u[i].abs() < 1e-7, "{k}: {z:?} {u:?}");

@@ -341,9 +341,7 @@ impl Boundary {
         self.ring(facet).iter().copied().filter(move |&other| {
             let there = self.middle(other, y);
             let way = there.position - here.position;
-            !self.is_smooth(facet, other, y)
-                && way.dot(&here.normal) < 0.0
-                && way.dot(&there.normal) > 0.0
+            !self.is_smooth(facet, other, y) && way.dot(&here.normal) < 0.0 && way.dot(&there.normal) > 0.0
         })
     }
 
