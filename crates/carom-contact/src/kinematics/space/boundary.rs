@@ -459,6 +459,29 @@ impl Boundary {
         Offset { vector: point - at.position, normal }
     }
 
+    /// Where a node lies on the outline of a facet; none of inner nodes.
+    fn on_outline(&self, facet: usize, node: usize) -> Option<[f64; 2]> {
+        let patch = self.patch(facet);
+        let count = patch.corners();
+        let degree = self.shape.degree();
+        let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
+        // Behind the corners come the inner nodes of edge after edge.
+        let Some(inner) = place.checked_sub(count) else { return Some(patch.corner(place)) };
+        let edge = inner / (degree - 1);
+        let k = inner % (degree - 1);
+        Some(patch.along(edge, (k + 1) as f64 / degree as f64))
+    }
+
+    /// Normals at a node of the facets that meet there; in the middle of a facet in which it is an
+    /// inner node, or on whose edge it is a point.
+    pub(super) fn normals_at(&self, node: usize, y: &[f64]) -> Vec<Vector<3>> {
+        let normal = |&facet: &usize| {
+            let xi = self.on_outline(facet, node);
+            xi.map_or_else(|| self.middle(facet, y), |xi| self.patch(facet).at(y, xi)).normal
+        };
+        self.facets_around(node).iter().map(normal).collect()
+    }
+
     /// Sum of the normals at a corner, weighted with the facets' angles, with those of mirror
     /// images.
     fn normal_at_corner(&self, node: usize, y: &[f64]) -> Vector<3> {
@@ -490,24 +513,8 @@ impl Boundary {
 
 impl Facets<3> for Boundary {
     fn facets_at(&self, node: usize) -> Vec<OnFacet<[f64; 2]>> {
-        let around = self.around.get(&node).into_iter().flatten().filter(|&&facet| self.is_of_side(facet));
-        let at = |&facet: &usize| {
-            let patch = self.patch(facet);
-            let count = patch.corners();
-            let degree = self.shape.degree();
-            let place = patch.nodes[..count * degree].iter().position(|&n| n == node)?;
-            // Behind the corners come the inner nodes of edge after edge.
-            let xi = match place.checked_sub(count) {
-                None => patch.corner(place),
-                Some(inner) => {
-                    let edge = inner / (degree - 1);
-                    let k = inner % (degree - 1);
-                    patch.along(edge, (k + 1) as f64 / degree as f64)
-                }
-            };
-            Some(OnFacet { facet, xi })
-        };
-        around.filter_map(at).collect()
+        let around = self.facets_around(node).iter().filter(|&&facet| self.is_of_side(facet));
+        around.filter_map(|&facet| Some(OnFacet { facet, xi: self.on_outline(facet, node)? })).collect()
     }
 
     fn shape(&self) -> FacetShape {

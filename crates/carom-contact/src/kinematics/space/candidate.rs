@@ -117,7 +117,7 @@ impl NodeToPatch {
             return false;
         }
         let around = own.facets_around(node);
-        let normals: Vec<_> = around.iter().map(|&facet| own.middle(facet, y).normal).collect();
+        let normals = own.normals_at(node, y);
         // The normal where the node meets the facet: in the middle of a dented one it differs.
         let normal = patch.at(y, xi).normal;
         if presses(&normals, normal, AROUND) {

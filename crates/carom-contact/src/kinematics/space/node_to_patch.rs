@@ -136,9 +136,7 @@ impl NodeToPatch {
         y: &'a [f64],
         middle: impl Fn(usize) -> PatchPoint + 'a,
     ) -> impl Fn(usize) -> bool + 'a {
-        let around = self.own.as_ref().map(|own| {
-            own.facets_around(node).iter().map(|&facet| own.middle(facet, y).normal).collect::<Vec<_>>()
-        });
+        let around = self.own.as_ref().map(|own| own.normals_at(node, y));
         move |facet| {
             let Some(around) = &around else { return true };
             let here = middle(facet);
