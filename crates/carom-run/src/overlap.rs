@@ -28,6 +28,7 @@ use carom_case::{
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
 use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Stepper, Tangent, depths};
+use carom_solid::facet_length;
 use carom_time::ForceRule;
 
 use crate::build::side::owner;
@@ -140,13 +141,9 @@ pub(crate) fn keep(case: &Case, model: &mut Model) {
     }
 }
 
-/// Distance between the first corners of the longest facet.
+/// Length of the longest facet.
 pub(crate) fn longest(facets: &[Vec<usize>], y: &[f64], d: usize) -> f64 {
-    let length = |facet: &Vec<usize>| {
-        let [from, to] = [0, 1].map(|corner| facet.get(corner).map_or(0, |node| node * d));
-        (0..d).map(|i| (y[from + i] - y[to + i]).powi(2)).sum::<f64>().sqrt()
-    };
-    facets.iter().map(length).fold(0.0, f64::max)
+    facets.iter().map(|facet| facet_length(facet, y, d)).fold(0.0, f64::max)
 }
 
 /// Adds to the depths that the contacts keep a share of their initial overlap.

@@ -10,6 +10,7 @@ mod earliest;
 mod element_shape;
 mod facet;
 mod facet_bernstein;
+mod facet_length;
 mod facet_point;
 mod factory;
 pub mod generate;
@@ -41,6 +42,7 @@ pub use body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Respons
 pub use bounds::Bounds;
 pub use earliest::{Earliest, Piece};
 pub use facet::{FacetFunctions, FacetShape};
+pub use facet_length::facet_length;
 pub use facet_point::FacetPoint;
 pub use factory::{
     AveragedAtPoints, Constitutive, LawAtPoints, PlaneState, RegionMaterial, VolumeAveraged, body,

@@ -1,7 +1,7 @@
 //! Common interface of the boundaries of bodies in the plane and in space.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, FacetShape, Hull, Tree};
+use carom_solid::{Bounds, FacetShape, Hull, Tree, facet_length};
 
 /// Distance, relative to the size of a facet, up to which another facet is near it.
 const NEAR: f64 = 0.25;
@@ -66,11 +66,9 @@ pub trait Facets<const D: usize> {
         self.nodes().len() / self.shape().nodes()
     }
 
-    /// Length of a facet: the distance between its first two corners.
+    /// Length of a facet: that of its shortest edge.
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
-        let nodes = self.nodes_of(facet);
-        let y = y.as_chunks::<D>().0;
-        (Vector(y[nodes[1]]) - Vector(y[nodes[0]])).norm()
+        facet_length(self.nodes_of(facet), y, D)
     }
 
     /// Bounding box of a facet.

@@ -1,6 +1,7 @@
 //! Boundaries of the bodies of a model, in global node numbers.
 
 use carom_contact::{Boundary, ClosedSurface, Depth, InsideItself, Side, Skin, Surface};
+use carom_solid::facet_length;
 
 use crate::model::{BodyInstance, Model, bounds};
 
@@ -92,11 +93,9 @@ pub(crate) fn position(y: &[f64], dimension: usize, node: usize) -> [f64; 3] {
     std::array::from_fn(|i| if i < dimension { y[dimension * node + i] } else { 0.0 })
 }
 
-/// Distance between the first corners of a facet in the reference configuration.
+/// Length of a facet in the reference configuration.
 pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
-    let d = model.dimension;
-    let [start, end] = [facet[0], facet[1]].map(|node| &model.reference[d * node..d * node + d]);
-    start.iter().zip(end).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt()
+    facet_length(facet, &model.reference, model.dimension)
 }
 
 pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {

@@ -179,7 +179,7 @@ impl Stepper for Implicit {
         } else {
             Works::default()
         };
-        if self.kernel.stages() > 1 {
+        if self.kernel.stages() > 1 || equations.stage.is_static() {
             ledger::keep_friction(model, &solved, &mut next);
         }
         if self.in_velocity {

@@ -128,7 +128,7 @@ impl Impulses {
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut kinds = vec![Kind::Normal; places.len()];
         let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
-        let laws = model.friction_laws(state.time + dt)?;
+        let laws = model.friction_laws(state.time + 0.5 * dt)?;
         let mut combination = Rows::new(model.dimension);
         for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
             let contact = &model.contacts[k];

@@ -9,6 +9,7 @@ use carom_contact::{
     NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
+use carom_solid::facet_length;
 
 use super::side::{Side, side};
 
@@ -336,14 +337,12 @@ pub(super) fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64],
     nodes.iter().filter_map(|node| of.get(node).copied()).collect()
 }
 
-/// The facets of a side in `d` dimensions with the distances between their first corners.
+/// The facets of a side in `d` dimensions with their lengths.
 fn lengths<'a>(
     facets: &'a [Vec<usize>],
     reference: &[f64],
     d: usize,
 ) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
-    facets.iter().filter(|facet| facet.len() > 1).map(move |facet| {
-        let [start, end] = [facet[0], facet[1]].map(|node| &reference[d * node..d * node + d]);
-        (facet, start.iter().zip(end).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt())
-    })
+    let facets = facets.iter().filter(|facet| facet.len() > 1);
+    facets.map(move |facet| (facet, facet_length(facet, reference, d)))
 }

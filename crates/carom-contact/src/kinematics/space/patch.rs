@@ -5,7 +5,7 @@
 
 use carom_algebra::{Mat, Vector};
 use carom_solid::shape::line_shape;
-use carom_solid::{FacetShape, Net};
+use carom_solid::{FacetShape, Net, facet_length};
 
 use crate::kinematics::projection::bisected;
 
@@ -158,9 +158,9 @@ impl Patch<'_> {
         nodes.fold(Vector::ZERO, |sum, (&n, value)| sum + (place(y, n) - from) * value)
     }
 
-    /// Length of the facet: the distance between its first two corners.
+    /// Length of the facet: that of its shortest edge.
     pub(crate) fn length(&self, y: &[f64]) -> f64 {
-        (place(y, self.nodes[1]) - place(y, self.nodes[0])).norm()
+        facet_length(self.nodes, y, 3)
     }
 
     /// Coordinates of the closest point by Newton's method from a good guess, on the facet and its
