@@ -207,15 +207,5 @@ fn reactions(model: &Model, state: &State, measured: &[Rows]) -> Vec<f64> {
         rows.iter().zip(pairs).for_each(|(row, pair)| row.add_to(pair.lambda, &mut force));
     }
     each_slip(model, state, |_, _, traction, row| row.add_to(traction, &mut force));
-    if std::env::var("DBG").is_ok() {
-        let mut other = vec![0.0; model.dofs()];
-        model.mass.multiply_into(&accelerations(state), &mut other);
-        for i in 0..other.len() {
-            other[i] += state.f_internal[i] + state.f_contact[i] - model.gravity[i] - state.f_external[i];
-        }
-        let size = state.f_contact.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-        let worst = force.iter().zip(&other).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-        if worst > 1e-9 * size { eprintln!("DIFF {:.3e}", worst / size); }
-    }
     force
 }
