@@ -196,12 +196,17 @@ fn accelerations(state: &State) -> Cow<'_, [f64]> {
     state.a.iter().zip(&state.jumps).map(|(a, jump)| a + jump).collect()
 }
 
-/// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext.
+/// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext, with
+/// the contact forces of the balance; where impulses take their place, with those of the pairs.
 fn reactions(model: &Model, state: &State, measured: &[Rows]) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&accelerations(state), &mut force);
     for i in 0..force.len() {
         force[i] += state.f_internal[i] - model.gravity[i] - state.f_external[i];
+    }
+    if state.f_contact.iter().any(|force| *force != 0.0) {
+        force.iter_mut().zip(&state.f_contact).for_each(|(force, contact)| *force += contact);
+        return force;
     }
     for (rows, pairs) in measured.iter().zip(&state.pairs) {
         rows.iter().zip(pairs).for_each(|(row, pair)| row.add_to(pair.lambda, &mut force));
