@@ -20,6 +20,8 @@ pub struct Excerpt {
     pub state: String,
     /// Mesh files of bodies beside the case.
     pub meshes: BTreeMap<String, String>,
+    /// Files of surfaces of obstacles beside the case, by the number of the contact's table.
+    pub surfaces: BTreeMap<usize, String>,
     /// Tables of loads beside the case, in the order of the loads; empty where there is none.
     pub tables: Vec<String>,
     /// Comment lines at the top of the file.
@@ -77,14 +79,24 @@ impl Excerpt {
         retain(&mut case, "body", &mut |body| named(body, &self.bodies));
         let mut entry = 0..;
         retain(&mut case, "contact", &mut |_| entry.next().is_some_and(|k| self.contacts.contains_key(&k)));
-        let mut names = self.contacts.values();
+        let mut tables = self.contacts.iter();
         each(&mut case, "contact", &mut |contact| {
-            if let Some(Some(name)) = names.next() {
+            let Some((entry, name)) = tables.next() else { return };
+            if let Some(name) = name {
                 contact.insert("name", value(name.as_str()));
+            }
+            let surface = contact.get_mut("primary").and_then(|primary| primary.get_mut("surface"));
+            if let (Some(file), Some(surface)) =
+                (self.surfaces.get(entry), surface.and_then(Item::as_table_like_mut))
+            {
+                surface.insert("file", value(file.as_str()));
             }
             if let Some(sides) = contact.get_mut("between").and_then(Item::as_array_mut) {
                 sides.retain(|side| side.as_str().is_some_and(kept));
             }
+        });
+        retain(&mut case, "tie", &mut |tie| {
+            ["secondary", "primary"].iter().all(|side| tie.get(side).and_then(Item::as_str).is_none_or(kept))
         });
         each(&mut case, "body", &mut |body| {
             // The state has it. The initial position says which depths a contact keeps.

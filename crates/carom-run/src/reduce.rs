@@ -2,10 +2,13 @@
 //! stop, without the bodies and contacts that the stop does not need. Every reduction is run.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use carom_case::{Case, ContactSpec, Excerpt, FileMesh, LoadKind, LoadSpec, MeshSpec, Problems};
+use carom_case::{
+    Case, ContactSpec, Excerpt, FileMesh, LoadKind, LoadSpec, MeshSpec, PrimarySpec, Problems, SurfaceSpec,
+};
 use carom_mechanics::{GridReport, Simulation, State};
 use carom_record::{Manifest, RecordError, Stop, StopPlace, checkpoints};
 
@@ -18,7 +21,7 @@ const FAR: u64 = 60;
 /// Steps beyond the stop.
 const BEYOND: u64 = 2;
 /// Why nothing is removed.
-pub const NEEDED: &str = "the stop needs every body and every contact";
+pub const NEEDED: &str = "no body and no contact could be left out";
 /// Name of the state beside the case.
 const STATE: &str = "state.bin";
 
@@ -294,6 +297,15 @@ fn write(
             meshes.insert(body.name.clone(), name);
         }
     }
+    let mut surfaces = BTreeMap::new();
+    for contact in &best.case.contacts {
+        if let PrimarySpec::Surface(SurfaceSpec { file, .. }) = &contact.primary {
+            let kind = file.extension().and_then(OsStr::to_str).unwrap_or("stl");
+            let name = format!("surface-{}.{kind}", contact.entry);
+            fs::copy(file, out.join(&name)).map_err(failed("copy", file))?;
+            surfaces.insert(contact.entry, name);
+        }
+    }
     let body_of = |side: &str| side.split('.').next().unwrap_or_default().to_owned();
     let remains = |body: &str| best.case.bodies.iter().any(|b| b.name == body);
     let acts = |load: &LoadSpec| match &load.kind {
@@ -326,6 +338,7 @@ fn write(
         end: best.case.time.end,
         state: STATE.into(),
         meshes,
+        surfaces,
         tables,
         comment,
     };

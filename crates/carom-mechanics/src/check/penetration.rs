@@ -378,7 +378,8 @@ impl Penetration {
                 let entered = |facet: usize| of_facet(skin.facet_nodes(facet));
                 if let Some(side) = *itself {
                     let nearest = skin.depth_of(node, side, watched.reach, y);
-                    watched.clearance = nearest.map_or(watched.reach, |nearest| nearest.distance);
+                    let distance = nearest.map_or(watched.reach, |nearest| nearest.distance);
+                    watched.clearance = distance - ROUND_OFF * watched.length;
                     let Some(nearest) = nearest else { continue };
                     (-nearest.distance - watched.kept, entered(nearest.facet))
                 } else {
@@ -397,7 +398,7 @@ impl Penetration {
                     let Some(nearest) = skin.depth(point, watched.near.map(|near| near.0), y) else {
                         continue;
                     };
-                    watched.clearance = nearest.distance;
+                    watched.clearance = nearest.distance - ROUND_OFF * watched.length;
                     watched.near = Some((nearest.facet, nearest.xi));
                     (-nearest.distance - watched.kept, entered(nearest.facet))
                 }
@@ -450,6 +451,9 @@ pub fn penetration(model: &Model, state: &State) -> Depths {
     Penetration::of_contacts(model).measure(model, state).depths
 }
 
+/// Distance over the length of a facet that may be round-off, and says nothing about how far a node
+/// may still move.
+const ROUND_OFF: f64 = 1e-9;
 /// Depth over the length of a facet that a chord of it may feign.
 const CHORDS: f64 = 0.01;
 /// Square of the distance between two positions of a node.
