@@ -331,10 +331,9 @@ impl Penetration {
             length: length(model, facet),
             is_at_kink: facet.iter().any(|node| kinks.binary_search(node).is_ok()),
         };
-        if let (Some(k), Some(state)) = (*contact, state)
-            && nodes.iter().any(|watched| watched.clearance <= 0.0)
-        {
-            // An active pair on its facet is no deeper than its gap.
+        if let (Some(k), Some(state)) = (*contact, state) {
+            // An active pair on its facet is no deeper than its gap; its node has no clearance,
+            // whatever it faced when it was last measured.
             let rows = rows.get_or_insert_with(|| Rows::new(model.dimension));
             let contact = &model.contacts[k];
             let half = first_of_earlier(contact);
@@ -364,12 +363,13 @@ impl Penetration {
             // `start` comes before those that precede it.
             let k = if i == 0 { start } else { i - usize::from(i <= start) };
             let watched = &mut nodes[k];
-            if watched.clearance > 0.0 {
+            let node = watched.node;
+            let is_node = watched.between.is_empty();
+            let of_node = paired.binary_search_by_key(&node, |(paired, ..)| *paired).ok().filter(|_| is_node);
+            if watched.clearance > 0.0 && of_node.is_none() {
                 continue;
             }
-            let node = watched.node;
-            let of_node = paired.binary_search_by_key(&node, |(paired, ..)| *paired).ok();
-            let (depth, entered) = if let Some(p) = of_node.filter(|_| watched.between.is_empty()) {
+            let (depth, entered) = if let Some(p) = of_node {
                 (paired[p].1, paired[p].2)
             } else {
                 if !std::mem::replace(&mut current[*body], true) {
@@ -424,7 +424,7 @@ impl Penetration {
                 limit = limit.max(model.contacts[k].depths.others * watched.length.max(entered.length));
             }
             if depth > limit && found.beyond.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
-                let what = if watched.between.is_empty() { What::Node } else { What::Edge };
+                let what = if is_node { What::Node } else { What::Edge };
                 found.beyond = Some(Inside { node, what, depth, limit });
             }
         }
