@@ -87,6 +87,28 @@ fn an_override_of_a_body_named_body() {
     assert_eq!(contact["between"].as_array().map(toml_edit::Array::len), Some(1));
 }
 
+/// A tie goes with either of its bodies, and the surface of an obstacle lies beside the case.
+#[test]
+fn ties_and_surfaces_of_an_excerpt() {
+    let text = "[[body]]\nname = \"a\"\n[[body]]\nname = \"b\"\n\
+        [[tie]]\nsecondary = \"a.top\"\nprimary = \"b.bottom\"\n\
+        [[contact]]\nname = \"gone\"\n[[contact]]\nname = \"press\"\nsecondary = \"a.top\"\n\
+        primary = { surface = { file = \"far/away.stl\", scale = 2.0 } }\n[time]\n[output]\n";
+    let excerpt = |bodies: &[&str]| Excerpt {
+        bodies: bodies.iter().map(|&body| body.to_owned()).collect(),
+        contacts: [(1, None)].into(),
+        surfaces: [(1, "surface-1.stl".to_owned())].into(),
+        ..Excerpt::default()
+    };
+    for (bodies, ties) in [(&["a", "b"][..], true), (&["a"], false)] {
+        let case: DocumentMut = excerpt(bodies).of(text, &[]).unwrap().parse().unwrap();
+        assert_eq!(case.get("tie").is_some(), ties);
+        let surface = &case["contact"][0]["primary"]["surface"];
+        assert_eq!(surface["file"].as_str(), Some("surface-1.stl"));
+        assert_eq!(surface["scale"].as_float(), Some(2.0));
+    }
+}
+
 /// The file of an extrusion is that of its plane mesh.
 #[test]
 fn the_file_of_an_extrusion_is_beside_the_case() {

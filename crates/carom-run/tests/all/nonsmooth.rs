@@ -341,3 +341,44 @@ fn restitution_with_friction_can_create_energy() {
     let plastic = finish(simulation(ROD, &["contact.floor.restitution=0.0", "time.energy_guard=false"]));
     assert!(plastic.state().ledger.total() < 0.625);
 }
+
+/// A sliding block whose friction grows with time: in every step the impulse of friction is that of
+/// the coefficient in its middle.
+#[test]
+fn a_coefficient_that_depends_on_time_is_that_in_the_middle_of_the_step() {
+    const SLIDES: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1000.0, young = 1e6, poisson = 0.0 }]
+[[body]]
+name = "b"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [-1.0, 0.0], max = [1.0, 0.1], cells = [8, 2] }
+velocity = [1.0, 0.0]
+gravity = [0.0, -10.0]
+[[contact]]
+name = "f"
+secondary = "b.bottom"
+mu = "2*t"
+primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
+[time]
+end = 0.2
+step = 0.004
+scheme = { kind = "hu" }
+"#;
+    for scheme in [
+        "time.scheme={ kind = \"moreau-jean\", theta = 0.5 }",
+        "time.scheme={ kind = \"nonsmooth-generalized-alpha\", rho_inf = 0.8 }",
+    ] {
+        let mut sim = simulation(SLIDES, &[scheme]);
+        let mut expected = 0.0;
+        while !sim.finished() {
+            let before = sim.state().impulse()[1];
+            let middle = sim.state().time + 0.002;
+            sim.advance(&mut GridReport::default()).unwrap();
+            expected -= 2.0 * middle * (sim.state().impulse()[1] - before);
+        }
+        let found = sim.state().impulse()[0];
+        assert!(expected < -20.0 && (found / expected - 1.0).abs() < 1e-9, "{scheme}: {found} {expected}");
+    }
+}

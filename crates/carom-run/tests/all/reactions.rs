@@ -119,3 +119,48 @@ fn forces_of_ties_change_the_momentum_of_a_body() {
         assert!(gained > 0.5 && (force / gained - 1.0).abs() < 0.01, "{scheme}: {force} {gained}");
     }
 }
+
+/// A block with friction under a dead load, in load steps and with schemes of several stages: the
+/// force of the contact and the reaction of the support, which holds nodes in contact, are the
+/// load.
+#[test]
+fn contact_and_supports_bear_the_load_with_friction() {
+    const PRESSED: &str = r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1e-4, young = 100.0, poisson = 0.3 }]
+[[body]]
+name = "base"
+material = "m"
+element = "Hex8"
+mesh = { shape = "box", min = [-0.7, -0.6, -0.5], max = [0.7, 0.6, 0.0], cells = [2, 2, 1] }
+[[body]]
+name = "low"
+material = "m"
+element = "Hex8"
+mesh = { shape = "box", min = [-0.4, -0.3, 0.0], max = [0.4, 0.3, 0.3], cells = [3, 2, 1] }
+[[support]]
+name = "ground"
+on = ["base.bottom", "base.left", "base.right"]
+fix = ["x", "y", "z"]
+[[contact]]
+name = "c"
+secondary = "low.bottom"
+primary = "base.top"
+mu = 1.0
+[[load]]
+on = ["low.top"]
+traction = ["0", "0", "-20*t"]
+[time]
+end = 1.0
+step = 0.25
+scheme = { kind = "static" }
+[output]
+fields_every = 0
+"#;
+    let run = record(PRESSED, &[]);
+    for name in ["contact_force_z", "ground.reaction_z"] {
+        for (time, force) in column(&run, "time").iter().zip(column(&run, name)) {
+            assert!((force - 9.6 * time).abs() < 1e-8, "{name} at {time}: {force}");
+        }
+    }
+}

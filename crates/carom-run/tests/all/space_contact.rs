@@ -324,3 +324,103 @@ mesh = { shape = "box", min = [-0.8, -0.8, -0.2], max = [0.8, 0.8, 0.0], cells =
     // In free fall it would be −3.2.
     assert!(mean(1).abs() < 1e-9 && mean(2) > -1.0, "{} {}", mean(1), mean(2));
 }
+
+/// A punch on a plate of oblong facets, and the same with x and y exchanged: which edge of a facet
+/// comes first in its numbering does not matter.
+#[test]
+fn permitted_depths_do_not_depend_on_numbering() {
+    let case = |[x, y]: [usize; 2]| {
+        let triple = |values: [f64; 3]| format!("[{}, {}, {}]", values[x], values[y], values[2]);
+        let cells = [3, 8, 2];
+        let cells = format!("[{}, {}, 2]", cells[x], cells[y]);
+        format!(
+            r#"
+dimension = 3
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }}]
+[[body]]
+name = "plate"
+material = "m"
+element = "Hex8"
+mesh = {{ shape = "box", min = [-1.0, -1.0, -0.5], max = [1.0, 1.0, 0.0], cells = {cells} }}
+[[body]]
+name = "punch"
+material = "m"
+element = "Hex8"
+mesh = {{ shape = "box", min = {}, max = {}, cells = [1, 1, 1] }}
+[[support]]
+on = ["plate.bottom"]
+fix = ["x", "y", "z"]
+[[support]]
+on = ["punch.top"]
+fix = ["x", "y"]
+move = {{ z = "-0.1*t" }}
+[[contact]]
+name = "c"
+secondary = "punch.bottom"
+primary = "plate.top"
+[time]
+end = 1.0
+step = 0.25
+scheme = {{ kind = "static" }}
+"#,
+            triple([-0.3, -0.25, 0.01]),
+            triple([0.3, 0.25, 0.31]),
+        )
+    };
+    let force = |axes| finish(simulation(&case(axes), &[""; 0])).state().contact_forces[0][2];
+    let [one, other] = [[0, 1], [1, 0]].map(force);
+    assert!(one > 7.0 && (one / other - 1.0).abs() < 1e-10, "{one} {other}");
+}
+
+/// The facets of a coarse ball turn by 45° from one to the next, and still join smoothly: nodes that
+/// slide over its joints go on with the next facet, and none sinks in.
+#[test]
+fn nodes_slide_over_the_joints_of_a_coarse_ball() {
+    const STRUCK: &str = r#"
+dimension = 3
+[[material]]
+name = "stone"
+law = "neo-hookean"
+density = 4.0
+young = 1000.0
+poisson = 0.3
+[[material]]
+name = "plate"
+law = "neo-hookean"
+density = 1.0
+young = 423.54
+poisson = 0.3
+[[body]]
+name = "stone"
+material = "stone"
+element = "Hex27"
+mesh = { shape = "ball", radius = 0.18064, center = [0.0, 0.0, 0.0], size = 0.14202 }
+place = { rotate = { axis = [-0.35107, -0.13897, -0.92598], angle = 123.31 }, shift = [0.25736, 0.48744, 0.19064] }
+velocity = [0.30059, 0.58893, -2.3265]
+mass = "lumped"
+[[body]]
+name = "plate"
+material = "plate"
+element = "Tet4"
+mesh = { shape = "box", min = [-0.8, -0.8, -0.047206], max = [0.8, 0.8, 0.047206], cells = [6, 6, 1] }
+place = { shift = [0.0, 0.0, -0.047206] }
+mass = "lumped"
+[[support]]
+on = ["plate.left", "plate.right", "plate.front", "plate.back"]
+fix = ["x", "y", "z"]
+[[contact]]
+name = "c"
+between = "all"
+self = false
+[time]
+end = 0.0295
+step = 0.000295
+scheme = { kind = "paoli-schatzman" }
+"#;
+    let mut sim = simulation(STRUCK, &[""; 0]);
+    let mut deepest = 0.0_f64;
+    while !sim.finished() {
+        deepest = deepest.max(sim.step().unwrap().penetration.constrained);
+    }
+    assert!(deepest < 1.1e-7, "{deepest:e}");
+}
