@@ -244,7 +244,14 @@ impl<'a> Newton<'a> {
             && measure.residual <= self.enough
             && (measure.gap <= model.gap_tolerance
                 || measure.may_depend && Constraints::gap(equations, now) <= model.gap_tolerance)
-            && (is_static || are_balanced(equations, now, self.noise))
+            && (is_static || self.is_at_rest() || are_balanced(equations, now, self.noise))
+    }
+
+    /// Whether the last correction has changed no digit of a position: more of them would not
+    /// either. The forces of a stiff body that is much lighter than its stresses are in balance but
+    /// for the round-off of those of its cells.
+    fn is_at_rest(&self) -> bool {
+        self.step <= 0.5 * f64::EPSILON * self.equations.model.scale
     }
 
     /// Updates the contacts of an iterate; returns whether one changed.
@@ -281,7 +288,7 @@ impl<'a> Newton<'a> {
             step: [self.step / model.scale, self.settings.tolerance],
             residual: [measure.residual, self.enough].map(|r| r / measure.forces.max(f64::MIN_POSITIVE)),
             gap: Some([measure.gap, model.gap_tolerance].map(|gap| gap / model.scale)),
-            unbalanced: !is_static && !are_balanced(equations, now, self.noise),
+            unbalanced: !is_static && !self.is_at_rest() && !are_balanced(equations, now, self.noise),
             changing: changed,
         })
     }
