@@ -2,7 +2,7 @@
 //! the two neighbouring corners that are closest to each other. It does not depend on which corner
 //! is the first one.
 
-/// Length of a facet with these nodes, corners first; 0 for a point. Positions are node by node.
+/// Length of a facet with these nodes, corners first, or of an edge of two; 0 for a point. Positions are node by node.
 ///
 /// ```
 /// // A rectangle of 3 × 1, whichever corner comes first.
@@ -17,7 +17,7 @@ pub fn facet_length(nodes: &[usize], positions: &[f64], dimension: usize) -> f64
     };
     match (dimension, nodes.len()) {
         (_, 0 | 1) => 0.0,
-        (1 | 2, _) => apart(nodes[0], nodes[1]),
+        (1 | 2, _) | (_, 2) => apart(nodes[0], nodes[1]),
         (_, count) => {
             let corners = if count == 4 || count == 9 { 4 } else { 3 };
             let edges = (0..corners).map(|corner| apart(nodes[corner], nodes[(corner + 1) % corners]));

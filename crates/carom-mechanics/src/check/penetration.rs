@@ -340,6 +340,7 @@ impl Penetration {
             let of_way = |node: usize| itself.is_none_or(|side| (side == Side::Later) == (node < half));
             for pair in state.pairs[k].iter().filter(|pair| {
                 pair.active
+                    && pair.node < contact.kinematics.nodes()
                     && contact.kinematics.is_on_facet(pair)
                     && contact.kinematics.allowed(pair.node) == 0.0
                     && of_way(pair.node)
