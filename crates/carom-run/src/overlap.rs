@@ -28,7 +28,7 @@ use carom_case::{
 use carom_contact::{Pairing, Rows};
 use carom_mechanics::model::Model;
 use carom_mechanics::{Grid, Implicit, InitialState, Linear, Settings, Simulation, Stepper, Tangent, depths};
-use carom_solid::facet_length;
+use carom_solid::longest_edge;
 use carom_time::ForceRule;
 
 use crate::build::side::owner;
@@ -143,7 +143,7 @@ pub(crate) fn keep(case: &Case, model: &mut Model) {
 
 /// Length of the longest facet.
 pub(crate) fn longest(facets: &[Vec<usize>], y: &[f64], d: usize) -> f64 {
-    facets.iter().map(|facet| facet_length(facet, y, d)).fold(0.0, f64::max)
+    facets.iter().map(|facet| longest_edge(facet, y, d)).fold(0.0, f64::max)
 }
 
 /// Adds to the depths that the contacts keep a share of their initial overlap.

@@ -42,7 +42,7 @@ pub use body::{Ask, Body, Configuration, Geometry, Inverted, PointState, Respons
 pub use bounds::Bounds;
 pub use earliest::{Earliest, Piece};
 pub use facet::{FacetFunctions, FacetShape};
-pub use facet_length::facet_length;
+pub use facet_length::{longest_edge, shortest_edge};
 pub use facet_point::FacetPoint;
 pub use factory::{
     AveragedAtPoints, Constitutive, LawAtPoints, PlaneState, RegionMaterial, VolumeAveraged, body,

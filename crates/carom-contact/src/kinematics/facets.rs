@@ -1,7 +1,7 @@
 //! Common interface of the boundaries of bodies in the plane and in space.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, FacetShape, Hull, Tree, facet_length};
+use carom_solid::{Bounds, FacetShape, Hull, Tree, longest_edge};
 
 /// Distance, relative to the size of a facet, up to which another facet is near it.
 const NEAR: f64 = 0.25;
@@ -66,9 +66,9 @@ pub trait Facets<const D: usize> {
         self.nodes().len() / self.shape().nodes()
     }
 
-    /// Length of a facet: that of its shortest edge.
+    /// Length of a facet: that of its longest edge.
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
-        facet_length(self.nodes_of(facet), y, D)
+        longest_edge(self.nodes_of(facet), y, D)
     }
 
     /// Bounding box of a facet.

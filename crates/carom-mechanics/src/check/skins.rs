@@ -1,7 +1,7 @@
 //! Boundaries of the bodies of a model, in global node numbers.
 
 use carom_contact::{Boundary, ClosedSurface, Depth, InsideItself, Side, Skin, Surface};
-use carom_solid::facet_length;
+use carom_solid::shortest_edge;
 
 use crate::model::{BodyInstance, Model, bounds};
 
@@ -93,9 +93,9 @@ pub(crate) fn position(y: &[f64], dimension: usize, node: usize) -> [f64; 3] {
     std::array::from_fn(|i| if i < dimension { y[dimension * node + i] } else { 0.0 })
 }
 
-/// Length of a facet in the reference configuration.
+/// Length of the shortest edge of a facet in the reference configuration.
 pub(crate) fn length(model: &Model, facet: &[usize]) -> f64 {
-    facet_length(facet, &model.reference, model.dimension)
+    shortest_edge(facet, &model.reference, model.dimension)
 }
 
 pub(crate) fn part_of(model: &Model, node: usize) -> Option<usize> {

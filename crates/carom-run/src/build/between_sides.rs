@@ -9,7 +9,7 @@ use carom_contact::{
     NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
-use carom_solid::facet_length;
+use carom_solid::{longest_edge, shortest_edge};
 
 use super::side::{Side, side};
 
@@ -253,8 +253,9 @@ impl Bodies<'_> {
 
     /// The depth to which smooth nodes may enter a side.
     fn depth_in(&self, side: &Side) -> f64 {
-        let lengths = lengths(&side.facets, self.reference, self.case.dimension);
-        ALLOWED * lengths.map(|(_, length)| length).fold(f64::INFINITY, f64::min)
+        let facets = side.facets.iter().filter(|facet| facet.len() > 1);
+        let lengths = facets.map(|facet| shortest_edge(facet, self.reference, self.case.dimension));
+        ALLOWED * lengths.fold(f64::INFINITY, f64::min)
     }
 
     /// The sides of a body that other contacts have in the place of this one's, with the same
@@ -328,21 +329,12 @@ pub(super) fn without(nodes: &[usize], sides: &[Side]) -> Vec<usize> {
 /// The length of the longest facet of each node of a side, in `d` dimensions.
 pub(super) fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64], d: usize) -> Vec<f64> {
     let mut of: HashMap<usize, f64> = HashMap::new();
-    for (facet, length) in lengths(facets, reference, d) {
+    for facet in facets.iter().filter(|facet| facet.len() > 1) {
+        let length = longest_edge(facet, reference, d);
         for &node in facet {
             let longest = of.entry(node).or_default();
             *longest = longest.max(length);
         }
     }
     nodes.iter().filter_map(|node| of.get(node).copied()).collect()
-}
-
-/// The facets of a side in `d` dimensions with their lengths.
-fn lengths<'a>(
-    facets: &'a [Vec<usize>],
-    reference: &[f64],
-    d: usize,
-) -> impl Iterator<Item = (&'a Vec<usize>, f64)> {
-    let facets = facets.iter().filter(|facet| facet.len() > 1);
-    facets.map(move |facet| (facet, facet_length(facet, reference, d)))
 }

@@ -55,13 +55,13 @@ time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 
 newton = { tolerance = 1e-12 }
 "#;
 
-/// Settings that extrude both bodies by a quarter of the unit of length, in one layer, with u_z = 0
-/// at both ends.
+/// Settings that extrude both bodies by more than a facet is long, so that permitted depths are those
+/// of the plane, in one layer, with u_z = 0 at both ends.
 fn extruded(text: &str, elements: &str, place: Option<&str>) -> Vec<String> {
     let shape = |body: &str| {
         let of = text.split(&format!("name = \"{body}\"")).nth(1).unwrap();
         let of = of.split("mesh = ").nth(1).unwrap().split_inclusive('}').next().unwrap();
-        format!("body.{body}.mesh={{ shape = \"extrusion\", of = {of}, height = 0.25, layers = 1 }}")
+        format!("body.{body}.mesh={{ shape = \"extrusion\", of = {of}, height = 0.75, layers = 1 }}")
     };
     let ends = |body: &str| {
         let [low, high] = if text != CORNER && body == "upper" { ["bottom", "top"] } else { ["base", "lid"] };
@@ -154,7 +154,7 @@ fn an_impact_of_tetrahedra_has_the_depth_and_the_impulse_of_the_plane() {
         };
         let centre = model.parts[0].nodes().find(is_centre).unwrap();
         let depth = model.parts[1].nodes().map(down).fold(0.0, f64::max);
-        [sim.state().impulses[0][1] * if d == 2 { 0.25 } else { 1.0 }, down(centre), depth]
+        [sim.state().impulses[0][1] * if d == 2 { 0.75 } else { 1.0 }, down(centre), depth]
     };
     let plane = figures(&finish(simulation(DISC, &[] as &[&str])), 2);
     let solid = figures(&finish(simulation(DISC, &extruded(DISC, "Tet10", None))), 3);

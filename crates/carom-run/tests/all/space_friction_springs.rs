@@ -13,8 +13,8 @@ use super::space_friction::{SCHEMES, of};
 const BRICKS: [&str; 4] = [
     "body.upper.element=\"Hex8\"",
     "body.lower.element=\"Hex8\"",
-    "body.upper.mesh={ shape = \"box\", min = [0.55, 0.01, 0.0], max = [2.55, 1.01, 0.5], cells = [3, 2, 1] }",
-    "body.lower.mesh={ shape = \"box\", min = [0.0, -1.0, 0.0], max = [4.0, 0.0, 0.5], cells = [6, 2, 1] }",
+    "body.upper.mesh={ shape = \"box\", min = [0.55, 0.01, 0.0], max = [2.55, 1.01, 1.0], cells = [3, 2, 1] }",
+    "body.lower.mesh={ shape = \"box\", min = [0.0, -1.0, 0.0], max = [4.0, 0.0, 1.0], cells = [6, 2, 1] }",
 ];
 
 const FLAT: [&str; 3] = [
@@ -51,8 +51,7 @@ fn an_impact_of_slabs_on_springs_is_that_of_the_plane() {
             sim.model().contacts[0].friction.as_ref().unwrap().springs.iter().sum()
         };
         let (plane, trial) = (run(5.0, false), run(5.0, true));
-        // Half as thick.
-        let ratio = 0.5 * springs(&plane) / springs(&trial);
+        let ratio = springs(&plane) / springs(&trial);
         let (plane, space) = (finish(plane), finish(run(5.0 * ratio, true)));
         let closed = |sim: &Simulation| sim.state().pairs[0].iter().filter(|pair| pair.active).count();
         assert!(closed(&plane) > 2 && closed(&space) == 2 * closed(&plane), "{scheme}");
@@ -60,7 +59,7 @@ fn an_impact_of_slabs_on_springs_is_that_of_the_plane() {
         assert!(worst < 1e-8, "{scheme}: {worst:e}");
         let [a, b] = [&plane, &space].map(|sim| &sim.state().ledger);
         for (a, b) in [(a.friction_work, b.friction_work), (a.stick_springs, b.stick_springs)] {
-            assert!(a != 0.0 && (b / (0.5 * a) - 1.0).abs() < 1e-5, "{scheme}: {a} {b}");
+            assert!(a != 0.0 && (b / a - 1.0).abs() < 1e-5, "{scheme}: {a} {b}");
         }
     }
 }
@@ -166,7 +165,7 @@ contact = [
     {{ name = "low", secondary = "b.bottom", mu = 5.0, enforcement = "penalty", stick_stiffness = 0.1, primary = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, motion = {{ {turns} }} }} }},
     {{ name = "high", secondary = "b.top", mu = 5.0, enforcement = "penalty", stick_stiffness = 0.1, primary = {{ plane = {{ point = [0, 0, 1], normal = [0, 0, -1] }}, motion = {{ x = "{}", y = "min(t, 1)*0.03", z = "{}", {turns} }} }} }},
 ]
-time = {{ scheme = {{ kind = "static" }}, step = 0.05, end = 2.0 }}
+time = {{ scheme = {{ kind = "static" }}, step = 0.025, end = 2.0 }}
 "#,
         shift("0.05", "-0.03"),
         shift("-0.03", "-0.05"),

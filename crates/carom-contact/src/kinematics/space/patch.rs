@@ -5,7 +5,7 @@
 
 use carom_algebra::{Mat, Vector};
 use carom_solid::shape::line_shape;
-use carom_solid::{FacetShape, Net, facet_length};
+use carom_solid::{FacetShape, Net, longest_edge};
 
 use crate::kinematics::projection::bisected;
 
@@ -158,9 +158,9 @@ impl Patch<'_> {
         nodes.fold(Vector::ZERO, |sum, (&n, value)| sum + (place(y, n) - from) * value)
     }
 
-    /// Length of the facet: that of its shortest edge.
+    /// Length of the facet: that of its longest edge.
     pub(crate) fn length(&self, y: &[f64]) -> f64 {
-        facet_length(self.nodes, y, 3)
+        longest_edge(self.nodes, y, 3)
     }
 
     /// Coordinates of the closest point by Newton's method from a good guess, on the facet and its
