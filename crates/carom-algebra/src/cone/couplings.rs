@@ -2,6 +2,9 @@
 
 use crate::LinearError;
 
+/// Weight ε of the proximal step, relative to the diagonal of the matrix.
+pub(super) const PROXIMAL: f64 = 1e-10;
+
 /// A square matrix by rows, without the entries of contacts that are not coupled. Its pattern is
 /// symmetric.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -23,9 +23,7 @@ pub use couplings::Couplings;
 pub use kind::Kind;
 
 use crate::LinearError;
-
-/// Weight ε of the proximal step, relative to the diagonal of the matrix.
-const PROXIMAL: f64 = 1e-10;
+use couplings::PROXIMAL;
 
 /// A problem of unilateral contact with friction for the forces z: motions u = A z + b.
 #[derive(Debug, PartialEq)]
@@ -38,8 +36,8 @@ pub struct Cone<'a> {
     pub kinds: &'a [Kind],
     /// Whether A is singular, because rows of contacts depend on each other. The solution is then
     /// that of a proximal step from the guess, with friction from the forces that the sweeps find:
-    /// ε D_ii is added to the diagonal and −ε D_ii z_i to b, ε = 1e-10. Each inequality still counts, and repeated steps converge to a solution of the
-    /// problem itself.
+    /// ε D_ii is added to the diagonal and −ε D_ii z_i to b, ε = 1e-10. Each inequality still
+    /// counts, and repeated steps converge to a solution of the problem itself.
     pub is_dependent: bool,
 }
 

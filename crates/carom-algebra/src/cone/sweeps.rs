@@ -13,10 +13,10 @@
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
 //! ```
 
+use super::couplings::{Couplings, PROXIMAL};
 use super::exact::{State, second, settle};
 use super::kind::Kind;
 use super::pivoting;
-use super::{Couplings, PROXIMAL};
 use crate::linear::LinearError;
 use crate::sums::max_abs;
 

@@ -211,8 +211,9 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
     }
 
     /// Hands over active pairs before Newton's method has converged, except those of a node with
-    /// several pairs and those over joints; `is_near`: whether a pair is within the reach of its facet, which may depend
-    /// on whether it was handed over before. Returns whether a pair was handed over.
+    /// several pairs and those over joints; `is_near`: whether a pair is within the reach of its
+    /// facet, which may depend on whether it was handed over before. Returns whether a pair was
+    /// handed over.
     pub(super) fn update(
         &self,
         pairing: &mut Pairing,
@@ -222,8 +223,8 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
         let Pairing { pairs, left, .. } = pairing;
         let several = Held::several(pairs);
         let mut changed = false;
-        // A row over all facets of a joint holds until the solve has converged: iterates slide further
-        // than the node, and a facet alone would push a symmetric contact to its side.
+        // A row over all facets of a joint holds until the solve has converged: iterates slide
+        // further than the node, and a facet alone would push a symmetric contact to its side.
         let is_alone = |pair: &Pair| pair.joint.is_none() && !several.contains(pair.node, pair.facet);
         for pair in pairs.iter_mut().filter(|pair| pair.active && is_alone(pair)) {
             if is_near(pair, left.contains_key(&pair.node)) {

@@ -153,8 +153,8 @@ impl Explicit {
         Ok(())
     }
 
-    /// By how much contact raises the energy M v·v/2 in a step in which its forces change from those
-    /// of `start` to those of `next` and do this work, up to what it has taken so far: with
+    /// By how much contact raises the energy M v·v/2 in a step in which its forces change from
+    /// those of `start` to those of `next` and do this work, up to what it has taken so far: with
     /// restitution nodes turn over several steps, and the velocity between those that the law
     /// relates, a mean of them, may be zero. With a_c = −M⁻¹f_contact the rise is
     ///

@@ -196,8 +196,9 @@ fn accelerations(state: &State) -> Cow<'_, [f64]> {
     state.a.iter().zip(&state.jumps).map(|(a, jump)| a + jump).collect()
 }
 
-/// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext, with
-/// the contact forces of the balance; where impulses take their place, with those of the pairs.
+/// Reaction forces on the bodies at constrained dofs and tied nodes: M a + f_int + Gᵀλ − f_ext,
+/// with the contact forces of the balance; where impulses take their place, with those of the
+/// pairs.
 fn reactions(model: &Model, state: &State, measured: &[Rows]) -> Vec<f64> {
     let mut force = vec![0.0; model.dofs()];
     model.mass.multiply_into(&accelerations(state), &mut force);

@@ -55,8 +55,8 @@ time = { scheme = { kind = "chung-hulbert", rho_inf = 0.8 }, step = 2e-3, end = 
 newton = { tolerance = 1e-12 }
 "#;
 
-/// Settings that extrude both bodies by more than a facet is long, so that permitted depths are those
-/// of the plane, in one layer, with u_z = 0 at both ends.
+/// Settings that extrude both bodies by more than a facet is long, so that permitted depths are
+/// those of the plane, in one layer, with u_z = 0 at both ends.
 fn extruded(text: &str, elements: &str, place: Option<&str>) -> Vec<String> {
     let shape = |body: &str| {
         let of = text.split(&format!("name = \"{body}\"")).nth(1).unwrap();

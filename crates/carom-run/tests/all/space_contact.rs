@@ -372,8 +372,8 @@ scheme = {{ kind = "static" }}
     assert!(one > 7.0 && (one / other - 1.0).abs() < 1e-10, "{one} {other}");
 }
 
-/// The facets of a coarse ball turn by 45° from one to the next, and still join smoothly: nodes that
-/// slide over its joints go on with the next facet, and none sinks in.
+/// The facets of a coarse ball turn by 45° from one to the next, and still join smoothly: nodes
+/// that slide over its joints go on with the next facet, and none sinks in.
 #[test]
 fn nodes_slide_over_the_joints_of_a_coarse_ball() {
     const STRUCK: &str = r#"
