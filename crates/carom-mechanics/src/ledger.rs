@@ -206,15 +206,15 @@ pub(crate) fn changes_of_reactions(
     [all - at_end, at_end]
 }
 
-/// Contact forces of a solved last stage as its balance has them, with friction along H(y_½)
-/// instead of H(y) between steps. The acceleration of the state contains them, and the first stage
-/// of a composite rule weighs both: momentum and energy are balanced with the same forces.
-pub(crate) fn keep_friction(model: &Model, solved: &Evaluation, state: &mut State) {
-    if !model.has_friction() {
-        return;
-    }
+/// Contact forces of a solved last stage as its balance has them: friction along H(y_½) instead of
+/// H(y) between steps, and conserving springs along the discrete gradients of their gaps instead of
+/// those at the end. The acceleration of the state contains them, and the first stage of a composite
+/// rule weighs both: momentum and energy are balanced with the same forces.
+pub(crate) fn keep_forces(model: &Model, solved: &Evaluation, state: &mut State) {
     state.f_contact.clone_from(&solved.forces.contact);
-    state.f_friction.clone_from(&solved.forces.friction);
+    if model.has_friction() {
+        state.f_friction.clone_from(&solved.forces.friction);
+    }
     state.contact_forces = contact_forces(model, solved);
 }
 

@@ -179,8 +179,11 @@ impl Stepper for Implicit {
         } else {
             Works::default()
         };
-        if self.kernel.stages() > 1 || equations.stage.is_static() {
-            ledger::keep_friction(model, &solved, &mut next);
+        let accumulates = |contact: &Contact| contact.interface.direction().accumulates();
+        let conserves = model.contacts.iter().any(accumulates);
+        let differs = model.has_friction() && (self.kernel.stages() > 1 || equations.stage.is_static());
+        if differs || conserves {
+            ledger::keep_forces(model, &solved, &mut next);
         }
         if self.in_velocity {
             carried::replace(&mut next, factor, &means.contact_forces);
@@ -196,7 +199,6 @@ impl Stepper for Implicit {
             model.mass.multiply_into(&change, &mut forces);
             next.ledger.contact_work -= dot(shift, &forces);
         }
-        let accumulates = |contact: &Contact| contact.interface.direction().accumulates();
         for (k, contact) in model.contacts.iter().enumerate().filter(|(_, contact)| accumulates(contact)) {
             debug_assert_eq!(next.pairs[k].len(), solved.rows[k].len(), "contact {}", contact.name);
             // The next step continues from the accumulated gap.
