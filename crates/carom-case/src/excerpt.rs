@@ -85,7 +85,8 @@ impl Excerpt {
             if let Some(name) = name {
                 contact.insert("name", value(name.as_str()));
             }
-            let surface = contact.get_mut("primary").and_then(|primary| primary.get_mut("surface"));
+            let primary = contact.get_mut("primary").and_then(Item::as_table_like_mut);
+            let surface = primary.and_then(|primary| primary.get_mut("surface"));
             if let (Some(file), Some(surface)) =
                 (self.surfaces.get(entry), surface.and_then(Item::as_table_like_mut))
             {

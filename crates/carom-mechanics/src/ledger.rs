@@ -208,8 +208,9 @@ pub(crate) fn changes_of_reactions(
 
 /// Contact forces of a solved last stage as its balance has them: friction along H(y_½) instead of
 /// H(y) between steps, and conserving springs along the discrete gradients of their gaps instead of
-/// those at the end. The acceleration of the state contains them, and the first stage of a composite
-/// rule weighs both: momentum and energy are balanced with the same forces.
+/// those at the end. The acceleration of the state contains them, the first stage of a composite
+/// rule weighs both, and in load steps they bear the loads: momentum and energy are balanced with
+/// the same forces.
 pub(crate) fn keep_forces(model: &Model, solved: &Evaluation, state: &mut State) {
     state.f_contact.clone_from(&solved.forces.contact);
     if model.has_friction() {

@@ -141,7 +141,7 @@ pub(crate) fn keep(case: &Case, model: &mut Model) {
     }
 }
 
-/// Length of the longest facet.
+/// Longest edge of the facets.
 pub(crate) fn longest(facets: &[Vec<usize>], y: &[f64], d: usize) -> f64 {
     facets.iter().map(|facet| longest_edge(facet, y, d)).fold(0.0, f64::max)
 }

@@ -301,7 +301,7 @@ fn write(
     for contact in &best.case.contacts {
         if let PrimarySpec::Surface(SurfaceSpec { file, .. }) = &contact.primary {
             let kind = file.extension().and_then(OsStr::to_str).unwrap_or("stl");
-            let name = format!("surface-{}.{kind}", contact.entry);
+            let name = format!("contact-{}.surface.{kind}", contact.entry);
             fs::copy(file, out.join(&name)).map_err(failed("copy", file))?;
             surfaces.insert(contact.entry, name);
         }

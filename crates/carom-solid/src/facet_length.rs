@@ -30,7 +30,8 @@ pub fn shortest_edge(nodes: &[usize], positions: &[f64], dimension: usize) -> f6
     edges(nodes, positions, dimension).reduce(f64::min).unwrap_or(0.0)
 }
 
-/// Length of the longest edge, likewise.
+/// Length of the longest edge of a facet with these nodes, corners first; 0 for a point. Positions
+/// are node by node.
 ///
 /// ```
 /// let y = [0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 3.0, 1.0, 0.0, 0.0, 1.0, 0.0];

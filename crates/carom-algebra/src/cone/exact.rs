@@ -157,9 +157,9 @@ impl Reduced {
     }
 }
 
-/// Solves the linear problem for given states; none if the solution is not finite. What is solved
-/// for is the difference to the forces `from`: of rows that depend on each other the forces
-/// themselves are known to few digits.
+/// Solves the linear problem for given states; none if the solution is not finite. Its unknowns are
+/// the differences to the forces `from`, because forces of rows that depend on each other follow
+/// from the linear problem to few digits only.
 fn solve(
     a: &[f64],
     b: &[f64],

@@ -1,13 +1,13 @@
 //! Sweeps of the nonlinear Gauss–Seidel method for contacts with friction.
 //!
-//! A force of zero diagonal moves nothing and is zero, also
-//! as a component of a vector, unless that component has a motion of its own, b_i ≠ 0. Rows that
-//! depend on each other come as a proximal step. Each tangential force
-//! belongs to one normal one; two in a row that belong to the same one are the components of a
-//! vector. Sweeps of the nonlinear Gauss–Seidel method find which contacts are open, stick, or
-//! slip; with that and the directions d of the slips the problem is linear and is solved exactly.
-//! Where its solution contradicts it, the sweeps go on. Directions of vectors follow from Newton's
-//! method: with e across d, Q = −r d + s e and
+//! A force of zero diagonal moves nothing and is zero, also as a component of a vector, unless that
+//! component has a motion of its own, b_i ≠ 0. Where rows depend on each other, sweeps and exact
+//! solutions are those of a proximal step. Each tangential force belongs to one normal one; two in
+//! a row that belong to the same one are the components of a vector. Sweeps of the nonlinear
+//! Gauss–Seidel method find which contacts are open, stick, or slip; with that and the directions d
+//! of the slips the problem is linear and is solved exactly. Where its solution contradicts it, the
+//! sweeps go on. Directions of vectors follow from Newton's method: with e across d, Q = −r d + s e
+//! and
 //!
 //! ```text
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
@@ -168,8 +168,8 @@ impl Coupled<'_> {
         obeys.then_some(exact)
     }
 
-    /// The exact solution for the states of these forces, and whether it obeys the law; that of a
-    /// proximal step which begins from these forces.
+    /// The exact solution for the states of these forces, and whether it obeys the law. The
+    /// proximal step of dependent rows begins from these forces.
     fn exact(&self, z: &[f64]) -> Option<(Vec<f64>, bool)> {
         let n = self.kinds.len();
         let mut states: Vec<State> = (0..n).map(|i| self.state(z, i)).collect();

@@ -1,7 +1,7 @@
 //! Common interface of the boundaries of bodies in the plane and in space.
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, FacetShape, Hull, Tree, longest_edge};
+use carom_solid::{Bounds, FacetShape, Hull, Tree, longest_edge, shortest_edge};
 
 /// Distance, relative to the size of a facet, up to which another facet is near it.
 const NEAR: f64 = 0.25;
@@ -69,6 +69,11 @@ pub trait Facets<const D: usize> {
     /// Length of a facet: that of its longest edge.
     fn length(&self, facet: usize, y: &[f64]) -> f64 {
         longest_edge(self.nodes_of(facet), y, D)
+    }
+
+    /// Length of the shortest edge of a facet, to which permitted depths are relative.
+    fn shortest_edge(&self, facet: usize, y: &[f64]) -> f64 {
+        shortest_edge(self.nodes_of(facet), y, D)
     }
 
     /// Bounding box of a facet.

@@ -36,7 +36,7 @@ pub(super) struct Paths<'a, B> {
     pub enters: &'a dyn Fn(usize, usize) -> bool,
     /// Whether a facet bounds a body that a node can enter.
     pub bounds: &'a dyn Fn(usize, usize) -> bool,
-    /// Allowed depth of a node that leaves where it entered, over the length of a facet.
+    /// Allowed depth of a node that leaves where it entered, over the shortest edge of a facet.
     pub bounce: f64,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Boxes<'a> {
     pub of_node: &'a dyn Fn(usize) -> Bounds,
 }
 
-/// Largest motion of the nodes of a body in a step, and the length of its shortest facet.
+/// Largest motion of the nodes of a body in a step, and the shortest edge of its facets.
 pub(super) struct Motion {
     of_body: f64,
     shortest: f64,
@@ -69,7 +69,7 @@ impl<B> Paths<'_, B> {
         let most = |nodes: &[usize]| nodes.iter().map(|&n| relative::<D>(ends, n, first)).fold(0.0, f64::max);
         let of_body = most(boundary.nodes()).sqrt();
         let of_nodes = most(nodes).sqrt();
-        let lengths = (0..boundary.all()).map(|facet| boundary.length(facet, ends[0]));
+        let lengths = (0..boundary.all()).map(|facet| boundary.shortest_edge(facet, ends[0]));
         let shortest = lengths.fold(f64::INFINITY, f64::min);
         (of_body + of_nodes > 2.0 * SHARE * shortest).then_some(Motion { of_body, shortest })
     }
@@ -81,7 +81,7 @@ impl<B> Paths<'_, B> {
     {
         let moved = |&other: &usize| relative::<D>(ends, node, other).sqrt();
         let most = self.boundary.nodes_of(facet).iter().map(moved).fold(0.0, f64::max);
-        most > 2.0 * SHARE * self.boundary.length(facet, ends[0])
+        most > 2.0 * SHARE * self.boundary.shortest_edge(facet, ends[0])
     }
 
     /// The node that was deepest beyond its limit, if any. `crossing`: where a node first crosses a
@@ -188,7 +188,7 @@ impl<const D: usize, B: Facets<D>> Way for OnWay<'_, '_, D, B> {
     fn on(&self, theta: f64, facet: usize, xi: [f64; 2], depth: f64) -> Seen {
         let boundary = self.boundary;
         let speed = self.between.speed(self.node, boundary.shape(), boundary.nodes_of(facet), xi);
-        let of_facet = self.slack + self.allowed.share * boundary.length(facet, self.before);
+        let of_facet = self.slack + self.allowed.share * boundary.shortest_edge(facet, self.before);
         let limit = of_facet.max(self.allowed.at_end);
         Seen { theta, facet, xi, depth, speed, limit }
     }

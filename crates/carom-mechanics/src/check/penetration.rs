@@ -371,6 +371,7 @@ impl Penetration {
                 continue;
             }
             let (depth, entered) = if let Some(p) = of_node {
+                watched.clearance = 0.0;
                 (paired[p].1, paired[p].2)
             } else {
                 if !std::mem::replace(&mut current[*body], true) {

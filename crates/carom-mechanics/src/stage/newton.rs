@@ -5,7 +5,8 @@
 //! Convergence requires all of: ‖Δy‖∞ ≤ tol·L; ‖r‖ ≤ tol·Σ‖f‖ (plus round-off according to the
 //! system's diagonal and the springs of penalties), and with friction and inertia its resultants
 //! vanish (`resultants.rs`); |g| ≤ 1e-12·L, and what positions are known to, on every active
-//! constraint; no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted. With
+//! constraint; no pair penetrates, pulls, or has slid off its facet. Nothing less is accepted, but
+//! resultants where the last correction is below round-off of L: no further one changes them. With
 //! an augmented Lagrangian this is a round, of which there are several (`rounds.rs`).
 
 use carom_algebra::sums::max_abs;
@@ -247,9 +248,10 @@ impl<'a> Newton<'a> {
             && (is_static || self.is_at_rest() || are_balanced(equations, now, self.noise))
     }
 
-    /// Whether the last correction has changed no digit of a position: more of them would not
-    /// either. The forces of a stiff body that is much lighter than its stresses are in balance but
-    /// for the round-off of those of its cells.
+    /// Whether the last correction is below the round-off of positions of the size of the model, so
+    /// that further ones change nothing. Resultants then remain of the size of the round-off of the
+    /// forces of cells, of which nodal forces are differences: much more than the forces that move
+    /// a light and stiff body.
     fn is_at_rest(&self) -> bool {
         self.step <= 0.5 * f64::EPSILON * self.equations.model.scale
     }

@@ -153,7 +153,7 @@ impl Explicit {
         Ok(())
     }
 
-    /// By how much contact raises the energy M v·v/2 in a step in which its forces change from
+    /// How much contact raises the energy M v·v/2 in a step in which its forces change from
     /// those of `start` to those of `next` and do this work, up to what it has taken so far: with
     /// restitution nodes turn over several steps, and the velocity between those that the law
     /// relates, a mean of them, may be zero. With a_c = −M⁻¹f_contact the rise is
@@ -204,7 +204,7 @@ impl Explicit {
             model.threads.sums(of, |[m, v, now, before]| [m * v * v, m * now * now, m * before * before]);
         let lent = self.lent(model, next, dt, now) - self.lent(model, start, dt, before);
         if touches && model.contacts.iter().any(|contact| contact.restitution > 0.0) {
-            // A part of it may be lent already.
+            // A part of what returns may be lent already.
             let returned = self.returned(model, [start, next], dt, of_contact);
             next.ledger.unbooked += f64::max(0.0, returned - lent);
         }

@@ -139,6 +139,9 @@ impl Stepper for Impulsive {
             next.jumps.resize(next.a.len(), 0.0);
             impulses.release(&mut next.jumps, 1.0 / dt);
         }
+        // Impulses take the place of contact forces: those of a start from another run are over.
+        next.f_contact.fill(0.0);
+        next.f_friction.fill(0.0);
         next.f_internal.clone_from(&solved.forces.internal);
         next.f_external.clone_from(&solved.forces.loads);
         let loads = next.f_external.clone();

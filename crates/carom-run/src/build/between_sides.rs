@@ -13,7 +13,8 @@ use carom_solid::{longest_edge, shortest_edge};
 
 use super::side::{Side, side};
 
-/// Depth of smooth nodes of the primary in edges of the secondary, over its shortest facet.
+/// Depth of smooth nodes of the primary in edges of the secondary, over the shortest edge of its
+/// facets.
 const ALLOWED: f64 = 0.02;
 
 /// A model as far as the contacts between its sides need it.
@@ -326,7 +327,7 @@ pub(super) fn without(nodes: &[usize], sides: &[Side]) -> Vec<usize> {
     nodes.iter().copied().filter(|node| !belongs(node)).collect()
 }
 
-/// The length of the longest facet of each node of a side, in `d` dimensions.
+/// The longest edge of the facets of each node of a side, in `d` dimensions.
 pub(super) fn longest(nodes: &[usize], facets: &[Vec<usize>], reference: &[f64], d: usize) -> Vec<f64> {
     let mut of: HashMap<usize, f64> = HashMap::new();
     for facet in facets.iter().filter(|facet| facet.len() > 1) {

@@ -120,9 +120,8 @@ fn forces_of_ties_change_the_momentum_of_a_body() {
     }
 }
 
-/// A block with friction under a dead load, in load steps and with schemes of several stages: the
-/// force of the contact and the reaction of the support, which holds nodes in contact, are the
-/// load.
+/// A block with friction under a dead load, in load steps: the force of the contact and the
+/// reaction of the support, which holds nodes in contact, are the load.
 #[test]
 fn contact_and_supports_bear_the_load_with_friction() {
     const PRESSED: &str = r#"

@@ -126,7 +126,7 @@ fn a_node_on_three_surfaces_of_one_edge_obeys_the_law() {
 }
 
 /// An edge of two nodes and three points between them over a plane: the rows of the points are
-/// means of those of the nodes. Of the nodes' forces friction is as large as pressure.
+/// means of those of the nodes, whose coefficient of friction is 1.
 #[test]
 fn points_between_the_nodes_of_an_edge_obey_the_law() {
     let normal = [0.48, 0.6, 0.64];

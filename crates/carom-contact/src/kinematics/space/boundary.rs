@@ -156,7 +156,7 @@ impl Boundary {
         Patch { shape: self.shape, nodes: self.nodes_of(facet) }
     }
 
-    /// Length of the shortest facet.
+    /// Smallest length of the facets.
     pub(super) fn shortest(&self, y: &[f64]) -> f64 {
         (0..self.all()).map(|facet| self.length(facet, y)).fold(f64::INFINITY, f64::min)
     }
@@ -293,8 +293,11 @@ impl Boundary {
         let at = |patch: &Patch, corner: usize| patch.at(y, patch.along(corner, 0.0)).normal;
         for corner in 0..corners {
             let node = own.nodes[corner];
-            if let Some(same) = met.nodes[..corners].iter().position(|&other| other == node) {
-                return [at(&own, corner), at(&met, same)];
+            let Some(same) = met.nodes[..corners].iter().position(|&other| other == node) else { continue };
+            let normals = [at(&own, corner), at(&met, same)];
+            // The edges of a degenerate facet may run along each other at a corner.
+            if normals.iter().all(|normal| normal.norm().is_finite()) {
+                return normals;
             }
         }
         [facet, other].map(|facet| self.middle(facet, y).normal)
@@ -338,7 +341,7 @@ impl Boundary {
     /// The facets that share a corner with a facet and bend away from it there by more than 30°.
     pub(super) fn bent_away(&self, facet: usize, y: &[f64]) -> impl Iterator<Item = usize> {
         let here = self.middle(facet, y);
-        self.ring(facet).iter().copied().filter(move |&other| {
+        self.ring(facet).iter().copied().filter(|&other| !self.is_mirror(other)).filter(move |&other| {
             let there = self.middle(other, y);
             let way = there.position - here.position;
             !self.is_smooth(facet, other, y) && way.dot(&here.normal) < 0.0 && way.dot(&there.normal) > 0.0
@@ -472,12 +475,13 @@ impl Boundary {
         Some(patch.along(edge, (k + 1) as f64 / degree as f64))
     }
 
-    /// Normals at a node of the facets that meet there; in the middle of a facet in which it is an
-    /// inner node, or on whose edge it is a point.
+    /// Normals at a node of the facets that meet there. Points of edges and inner nodes of facets
+    /// take those in the middles of the facets, and so do corners without a normal.
     pub(super) fn normals_at(&self, node: usize, y: &[f64]) -> Vec<Vector<3>> {
         let normal = |&facet: &usize| {
-            let xi = self.on_outline(facet, node);
-            xi.map_or_else(|| self.middle(facet, y), |xi| self.patch(facet).at(y, xi)).normal
+            let at_node = self.on_outline(facet, node).map(|xi| self.patch(facet).at(y, xi).normal);
+            let known = at_node.filter(|normal| normal.norm().is_finite());
+            known.unwrap_or_else(|| self.middle(facet, y).normal)
         };
         self.facets_around(node).iter().map(normal).collect()
     }

@@ -75,8 +75,9 @@ impl OnFacets for NodeToPatch {
 
     fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
         let joined = self.primary.joined(facet, joint);
-        let is_smooth =
-            |&other: &usize| self.primary.is_of_side(other) && self.primary.is_smooth(facet, other, y);
+        let is_smooth = |&other: &usize| {
+            self.primary.is_of_side(other) && (other == facet || self.primary.is_smooth(facet, other, y))
+        };
         joined.len() > 1 && joined.iter().all(is_smooth)
     }
 
