@@ -17,6 +17,9 @@ use super::points::{Point, Points};
 /// Norm (rows are of order one) below which a row constrains nothing.
 const SHORT: f64 = 1e-8;
 
+/// Share of the largest motion from which another body moves with it.
+const TOGETHER_FROM: f64 = 0.5;
+
 /// A rigid mode of pieces that ties connect, or of one piece, that supports leave free.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
@@ -37,22 +40,43 @@ pub struct RigidMotion {
     size: f64,
 }
 
-/// An unconstrained body.
+/// A body, or several that contacts hold together, that nothing constrains.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}body \"{body}\" is free to {motion}: {}", if *is_piece { "a piece of " } else { "" }, if *slips { SLIPS } else { FREE })]
+#[error("{} free to {motion}: {}", self.subject(), self.cause())]
 pub struct Unconstrained {
-    /// Its name.
-    pub body: String,
-    /// Whether a piece of it is, not all of it.
+    /// Names of the bodies that move together, the one that moves most first.
+    pub bodies: Vec<String>,
+    /// Whether a piece of the first one moves, not all of it.
     pub is_piece: bool,
-    /// Its free motion.
+    /// Their free motion.
     pub motion: &'static str,
-    /// Whether closed contacts would constrain it if they did not slip.
+    /// Whether closed contacts would constrain them if they did not slip.
     pub slips: bool,
+}
+
+impl Unconstrained {
+    fn subject(&self) -> String {
+        let names: Vec<String> = self.bodies.iter().map(|name| format!("\"{name}\"")).collect();
+        match &names[..] {
+            [only] if self.is_piece => format!("a piece of body {only} is"),
+            [only] => format!("body {only} is"),
+            _ => format!("bodies {} are together", names.join(", ")),
+        }
+    }
+
+    fn cause(&self) -> &'static str {
+        match self.bodies.len() {
+            _ if self.slips => SLIPS,
+            0 | 1 => FREE,
+            _ => TOGETHER,
+        }
+    }
 }
 
 const FREE: &str = "neither supports nor closed contacts constrain this motion. Add a support, press the body with \
     a support that moves instead of a force, start with the contact closed, or use a scheme with inertia";
+const TOGETHER: &str = "contacts hold them to each other, but no support constrains this motion. Add a support to one of \
+    them, or use a scheme with inertia";
 const SLIPS: &str = "its closed contacts slip, and the load exceeds what friction can carry. Use a smaller load, a \
     larger coefficient or shear limit of friction, a support that moves, or a scheme with inertia";
 
@@ -277,8 +301,17 @@ pub(crate) fn check_rigid_modes<'a>(
         (0..remaining.len()).max_by(|a, b| remaining[*a].abs().total_cmp(&remaining[*b].abs())).unwrap_or(0);
     let mode = &free[largest];
     let first = mode.motions.first();
+    let moves = |k: &usize| remaining[*k].abs() > TOGETHER_FROM * remaining[largest].abs();
+    let together = (0..free.len()).filter(moves).filter(|&k| free[k].motion() == mode.motion());
+    let mut bodies: Vec<String> = Vec::new();
+    for motion in std::iter::once(largest).chain(together).filter_map(|k| free[k].motions.first()) {
+        let name = &parts[motion.part].name;
+        if !bodies.contains(name) {
+            bodies.push(name.clone());
+        }
+    }
     Err(Unconstrained {
-        body: first.map_or_else(String::new, |motion| parts[motion.part].name.clone()),
+        bodies,
         is_piece: first.is_some_and(|motion| motion.is_of_piece(parts)),
         motion: mode.motion(),
         slips: remaining_with_slips.is_empty(),

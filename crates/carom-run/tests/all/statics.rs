@@ -256,3 +256,22 @@ primary = { plane = { point = [0.0, 0.5], normal = [0.0, -1.0] }, motion = { y =
         assert!((force.abs() / exact - 1.0).abs() < known, "{stiffness:e}: {force} {exact}");
     }
 }
+
+/// A block that presses on a plate without a support below: both are named, not the block alone.
+#[test]
+fn bodies_that_are_free_together_are_named_together() {
+    const FLOATS: &str = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+body = [
+    { name = "block", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [0.5, 0.5], cells = [2, 2] }, gravity = [0.0, -1.0] },
+    { name = "plate", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0.0, -0.3], max = [1.0, 0.0], cells = [4, 1] } },
+]
+support = [{ on = ["block.left", "plate.left"], fix = ["x"] }]
+contact = [{ name = "foot", secondary = "block.bottom", primary = "plate.top" }]
+time = { scheme = { kind = "static" }, step = 1.0, end = 1.0 }
+"#;
+    let stopped = simulation(FLOATS, &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
+    assert!(stopped.contains("bodies \"block\", \"plate\" are together free to move along y"), "{stopped}");
+    assert!(stopped.contains("Add a support to one of them"), "{stopped}");
+}
