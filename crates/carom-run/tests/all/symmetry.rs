@@ -110,24 +110,51 @@ fn a_flat_drop_stays_on_its_axis() {
     }
 }
 
+/// A punch with sharp edges, longer than the plate into which it is pressed. Returns the force on
+/// the secondary side.
+fn punched(plate: &str, punch: &str, planes: &str, contact: &str) -> [f64; 3] {
+    let text = format!(
+        r#"
+dimension = 3
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }}]
+body = [
+    {{ name = "plate", material = "m", element = "Hex8", mesh = {{ shape = "box", {plate} }} }},
+    {{ name = "punch", material = "m", element = "Hex8", mesh = {{ shape = "box", {punch} }} }},
+]
+support = [
+    {planes}
+    {{ on = ["plate.bottom"], fix = ["x", "y", "z"] }},
+    {{ on = ["punch.top"], fix = ["x", "y"], move = {{ z = "-0.1*t" }} }},
+]
+contact = [{{ name = "c", {contact} }}]
+time = {{ scheme = {{ kind = "static" }}, step = 0.25, end = 1.0 }}
+"#
+    );
+    finish(simulation(&text, &[""; 0])).state().contact_forces[0]
+}
+
+const PLATE: &str = "min = [-1, -1, -0.5], max = [1, 1, 0], cells = [4, 4, 2]";
+
+/// Sharp edges that cross hold each other in a quarter model as in the whole one: those that have
+/// opened find each other again.
+#[test]
+fn crossing_edges_of_a_quarter_model_are_those_of_the_whole() {
+    let contact = r#"secondary = "punch.skin", primary = "plate.skin""#;
+    let punch = "min = [-0.3, -1.3, 0.001], max = [0.3, 1.3, 0.301], cells = [2, 2, 1]";
+    let whole = punched(PLATE, punch, "", contact)[2];
+    let planes = r#"{ on = ["plate.left", "punch.left"], fix = ["x"] }, { on = ["plate.front", "punch.front"], fix = ["y"] },"#;
+    let plate = "min = [0, 0, -0.5], max = [1, 1, 0], cells = [2, 2, 2]";
+    let punch = "min = [0, 0, 0.001], max = [0.3, 1.3, 0.301], cells = [1, 1, 1]";
+    let quarter = punched(plate, punch, planes, contact)[2];
+    assert!(whole > 20.0 && (whole / (4.0 * quarter) - 1.0).abs() < 1e-8, "{whole} {quarter}");
+}
+
 /// Faces that touch at the start press straight on each other: nodes under the joint in the middle
 /// of the punch have the mean of its facets, whatever iterates do.
 #[test]
 fn a_symmetric_punch_does_not_press_to_its_side() {
-    const PUNCH: &str = r#"
-dimension = 3
-material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
-body = [
-    { name = "plate", material = "m", element = "Hex8", mesh = { shape = "box", min = [-1, -1, -0.5], max = [1, 1, 0], cells = [4, 4, 2] } },
-    { name = "punch", material = "m", element = "Hex8", mesh = { shape = "box", min = [-0.3, -1.3, 0], max = [0.3, 1.3, 0.3], cells = [2, 2, 1] } },
-]
-support = [
-    { on = ["plate.bottom"], fix = ["x", "y", "z"] },
-    { on = ["punch.top"], fix = ["x", "y"], move = { z = "-0.1*t" } },
-]
-contact = [{ name = "c", secondary = "plate.skin", primary = "punch.skin" }]
-time = { scheme = { kind = "static" }, step = 0.25, end = 1.0 }
-"#;
-    let [fx, fy, fz] = finish(simulation(PUNCH, &[""; 0])).state().contact_forces[0];
+    let contact = r#"secondary = "plate.skin", primary = "punch.skin""#;
+    let punch = "min = [-0.3, -1.3, 0], max = [0.3, 1.3, 0.3], cells = [2, 2, 1]";
+    let [fx, fy, fz] = punched(PLATE, punch, "", contact);
     assert!(fz < -20.0 && fx.abs() < 1e-9 && fy.abs() < 1e-9, "{fx} {fy} {fz}");
 }

@@ -28,7 +28,9 @@ use crate::rows::Rows;
 /// Sine of the angle between edges below which they form no pair.
 const ALONG: f64 = 0.1;
 /// Sine of the angle by which the normal of a new pair lies between the facets' normals at least.
-const BETWEEN: f64 = 0.002;
+/// Below zero: flat faces that press on each other across their edges turn by their strains, and a
+/// pair there that has opened must find back.
+const BETWEEN: f64 = -0.02;
 /// Negative sine of the angle by which the normal of a known pair may lie outside the facets'
 /// normals: an edge that lies on a facet is constrained at its end by the edge of the facet.
 const OUTSIDE: f64 = -0.4;
