@@ -27,8 +27,8 @@ pub struct Independent {
 pub enum Plane {
     /// Both rows depend on earlier ones.
     Nothing,
-    /// Of the combinations of the two rows only multiples of i times the first row plus j times the
-    /// second row are independent. The entries are the factors i and j, with i² + j² = 1.
+    /// Only multiples of i times the first row plus j times the second row are independent. The
+    /// entries are the factors i and j, with i² + j² = 1.
     Line([f64; 2]),
     /// Both rows are independent.
     All,
