@@ -158,6 +158,14 @@ impl Condensed {
         Ok(Room::default().cholesky(square, size).is_ok())
     }
 
+    /// Whether the block of the unknowns that are eliminated is positive definite.
+    pub fn is_inner_positive(&self) -> bool {
+        match &self.numbers {
+            Numbers::Double(entries) => entries.signs.is_empty(),
+            Numbers::Single(entries) => entries.signs.is_empty(),
+        }
+    }
+
     /// The Schur complement S, column by column; only the lower triangle is filled.
     pub fn schur(&self) -> &[f64] {
         &self.schur

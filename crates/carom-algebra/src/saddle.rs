@@ -199,6 +199,11 @@ impl Saddle {
         true
     }
 
+    /// Whether S, with what rows add to it, was positive definite when it was factored.
+    pub fn is_positive(&self) -> bool {
+        self.indefinite.is_none()
+    }
+
     /// Factors TᵀT without the rows that depend linearly on earlier ones: theirs become those of
     /// the identity.
     fn factor_independent(&mut self) {

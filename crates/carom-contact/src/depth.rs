@@ -7,6 +7,7 @@
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
+use crate::kinematics::mirror::Continuation;
 use crate::kinematics::{Depth, Facets, OnFacet, Surface};
 use crate::places::Places;
 
@@ -72,7 +73,7 @@ impl Facets<2> for Surface {
     }
 
     fn is_mirror(&self, facet: usize) -> bool {
-        self.mirrors.get(facet).is_some_and(|&is_mirror| is_mirror)
+        self.continuation(facet) == Continuation::Mirror
     }
 
     fn distance(&self, facet: usize, point: Vector<2>, y: &[f64]) -> f64 {

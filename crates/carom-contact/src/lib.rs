@@ -28,10 +28,10 @@ pub use interface::{
     Unilateral,
 };
 pub use kinematics::{
-    Boundary, Carrier, ClosedSurface, Combined, ContactPoint, Crossings, Depth, Detection, EdgePoints,
-    EdgeToEdge, Faceted, Kinematics, Mortar, NodalPressure, NodeToFacet, NodeToObstacle, NodeToPatch,
-    NodesWithDepth, Obstacle, OnFacet, Outward, Passed, Polyline, PolylineError, Quadrature, Side, SpaceHit,
-    Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet,
+    AtJoints, Boundary, Carrier, ClosedSurface, Combined, ContactPoint, Crossings, Depth, Detection,
+    EdgePoints, EdgeToEdge, Faceted, Kinematics, Mortar, NodalPressure, NodeToFacet, NodeToObstacle,
+    NodeToPatch, NodesWithDepth, Obstacle, OnFacet, Outward, Passed, Polyline, PolylineError, Quadrature,
+    Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

@@ -41,6 +41,10 @@ pub struct Pair {
     /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
     /// the midpoint holds to second order only.
     pub start: Option<f64>,
+    /// Depth that the pair keeps, ≥ 0, by which its gap is larger: that at which it began.
+    pub depth: f64,
+    /// Whether the pair has just been found or handed over, so that its depth is not known yet.
+    pub begins: bool,
     /// Tangential state and history, for friction.
     pub tangential: Tangential,
 }
@@ -60,6 +64,8 @@ impl Pair {
             lambda: 0.0,
             multiplier: 0.0,
             start: None,
+            depth: 0.0,
+            begins: true,
             tangential: Tangential::default(),
         }
     }

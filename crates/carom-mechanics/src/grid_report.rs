@@ -67,6 +67,11 @@ pub enum LogEvent {
         /// The smallest relative singular value of the interface, with the sign of its determinant.
         regularity: f64,
     },
+    /// The equilibrium of a load step is unstable.
+    Unstable {
+        /// Time at the end of the (sub)step.
+        time: f64,
+    },
     /// Closed gaps depend on others, or supports and ties keep them closed.
     Dependent {
         /// Time at the end of the (sub)step.
@@ -141,6 +146,9 @@ impl GridReport {
         self.events.extend(pairs.map(|(contact, event)| LogEvent::Pair { time, contact, event }));
         if let Some(regularity) = step.ambiguity {
             self.events.push(LogEvent::Ambiguous { time, regularity });
+        }
+        if step.unstable {
+            self.events.push(LogEvent::Unstable { time });
         }
         if !step.dependent.is_empty() {
             let mut gaps = step.dependent;

@@ -78,7 +78,10 @@ pub fn start(
         slid: BTreeMap::new(),
         memory: Vec::new(),
     });
-    pairs.iter_mut().flatten().for_each(|pair| pair.rests = pair.active);
+    for pair in pairs.iter_mut().flatten() {
+        pair.rests = pair.active;
+        pair.begins = false;
+    }
     let mut state = State {
         y,
         v: if has_inertia { v } else { vec![0.0; dofs] },

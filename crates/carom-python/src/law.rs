@@ -17,8 +17,11 @@ const MOST: usize = 16;
 
 /// A Python object with the method `response(F, memory)`, which returns what a point of the
 /// material stores, dissipates in the step, P, ∂P/∂F, and its new memory.
+///
+/// `MEMORY` is 0 for an object that remembers nothing, and otherwise the most that any may
+/// remember.
 #[derive(Clone)]
-pub(crate) struct Law {
+pub(crate) struct Law<const MEMORY: usize> {
     name: String,
     object: Arc<Py<PyAny>>,
     /// Count of numbers that a point remembers.
@@ -37,18 +40,36 @@ pub(crate) struct Point {
     memory: Vec<f64>,
 }
 
-impl Law {
+/// The law of a material: what remembers nothing is evaluated where elastic laws are, also its
+/// stress at probes.
+pub(crate) enum OwnLaw {
+    Elastic(Law<0>),
+    WithMemory(Law<MOST>),
+}
+
+impl OwnLaw {
     /// The law of a material from its object, whose attribute `memory` is the count of numbers.
     pub(crate) fn new(name: String, object: &Bound<'_, PyAny>, failure: Failure) -> PyResult<Self> {
-        let memory: usize = object.getattr("memory")?.extract()?;
+        let given = object.getattr("memory")?;
+        let wrong = |why: String| {
+            PyValueError::new_err(format!("the law of `{name}` remembers {given} numbers; {why}"))
+        };
+        let memory: usize =
+            given.extract().map_err(|_| wrong("it must be a whole number from 0 on".into()))?;
         if memory > MOST {
-            let what = format!("the law of `{name}` remembers {memory} numbers; the most is {MOST}");
-            return Err(PyValueError::new_err(what));
+            return Err(wrong(format!("the most is {MOST}")));
         }
         object.getattr("response")?;
-        Ok(Self { name, object: Arc::new(object.clone().unbind()), memory, failure })
+        let object = Arc::new(object.clone().unbind());
+        Ok(if memory == 0 {
+            Self::Elastic(Law { name, object, memory, failure })
+        } else {
+            Self::WithMemory(Law { name, object, memory, failure })
+        })
     }
+}
 
+impl<const MEMORY: usize> Law<MEMORY> {
     fn called(&self, py: Python<'_>, f: [[f64; 3]; 3], memory: &[f64]) -> PyResult<Point> {
         let numpy = py.import("numpy")?;
         let numbers = |values: &Bound<'_, PyAny>, count: usize, what: &str| -> PyResult<Vec<f64>> {
@@ -107,8 +128,8 @@ impl Point {
     }
 }
 
-impl<const D: usize> Material<D> for Law {
-    const MEMORY: usize = MOST;
+impl<const D: usize, const M: usize> Material<D> for Law<M> {
+    const MEMORY: usize = M;
     type Point = Point;
 
     /// Unknown: the object does not say what its numbers mean.
@@ -175,4 +196,4 @@ impl<const D: usize> Material<D> for Law {
     }
 }
 
-impl Thickness for Law {}
+impl<const MEMORY: usize> Thickness for Law<MEMORY> {}

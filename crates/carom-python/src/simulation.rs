@@ -15,7 +15,7 @@ use serde_json::Value as Json;
 use crate::case::Case;
 use crate::error::{CaseError, of_problems};
 use crate::function::{Failure, functions, raised};
-use crate::law::Law;
+use crate::law::OwnLaw;
 use crate::tables;
 use crate::threads::thread_count;
 
@@ -77,7 +77,7 @@ impl Simulation {
         let mut own = Vec::new();
         for (material, object) in laws {
             let material: String = material.extract()?;
-            own.push((material.clone(), Law::new(material, &object, failure.clone())?));
+            own.push((material.clone(), OwnLaw::new(material, &object, failure.clone())?));
         }
         let mut remembered: Vec<String> =
             fingerprints.iter().map(|(material, of_law)| format!("{material}:{of_law}")).collect();
@@ -85,7 +85,10 @@ impl Simulation {
         let spec = case.with(functions);
         let started = py.detach(|| {
             let setup = Setup::new(&spec).threads(thread_count(threads));
-            let setup = own.into_iter().fold(setup, |setup, (material, law)| setup.material(&material, law));
+            let setup = own.into_iter().fold(setup, |setup, (material, law)| match law {
+                OwnLaw::Elastic(law) => setup.material(&material, law),
+                OwnLaw::WithMemory(law) => setup.material(&material, law),
+            });
             let library = setup.start()?;
             let rows = Rows::new(&spec, &library);
             Ok(Inner { library, rows })

@@ -167,6 +167,11 @@ impl Kinematics for Combined {
         part.is_on_facet(&pair)
     }
 
+    fn keeps_depth(&self, pair: &Pair) -> bool {
+        let (part, pair) = self.of_pair(pair);
+        part.keeps_depth(&pair)
+    }
+
     fn facets(&self, node: usize) -> usize {
         let (part, node) = self.of(node);
         part.facets(node)

@@ -72,7 +72,7 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        if self.single || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        if !self.at_joints.mean || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;
@@ -113,7 +113,7 @@ impl OnFacets for NodeToFacet {
         let gap = self.gap_of(pair, y);
         ContactError::unless_regular(node, pair, gap.a)?;
         let slopes = gap.gradient(facet.nodes.len());
-        rows.push_both(gap.distance + self.slack(pair.node), [&[node], facet.nodes], slopes);
+        rows.push_both(gap.distance + self.slack(pair.node) + pair.depth, [&[node], facet.nodes], slopes);
         Ok(())
     }
 

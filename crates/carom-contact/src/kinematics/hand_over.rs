@@ -79,6 +79,7 @@ impl Moves<'_> {
         self.held.take(pair.node, facet);
         pair.facet = facet;
         pair.joint = None;
+        pair.begins = true;
         [pair.xi, pair.eta] = xi;
     }
 
@@ -196,7 +197,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
         let Moves { concave: mut added, yielding, changed, .. } = moves;
         for (old, OnFacet { facet, xi: [xi, eta] }) in yielding {
             let other = pairs.iter_mut().find(|pair| (pair.node, pair.facet) == (old.node, facet));
-            let moved = Pair { facet, xi, eta, joint: None, ..old };
+            let moved = Pair { facet, xi, eta, joint: None, begins: true, ..old };
             match other {
                 Some(pair) if pair.active => {}
                 Some(pair) => *pair = Pair { joint: pair.joint, ..moved },
@@ -237,6 +238,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
                 previous = Some(pair.facet);
                 pair.facet = facet;
                 pair.joint = None;
+                pair.begins = true;
                 [pair.xi, pair.eta] = xi;
             }
             if pair.facet != from {

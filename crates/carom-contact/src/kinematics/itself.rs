@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::Combined;
 use super::facing::PAST;
 use super::folds::{Folds, Side};
+use super::joint::AtJoints;
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::reversed::NodesWithDepth;
 use super::surface::Surface;
@@ -15,19 +16,19 @@ impl NodeToFacet {
     /// A side against itself: its nodes in the role of the later place, and in that of the earlier
     /// one, where their depth is zero at corners; `piece`: the connected piece of its body to
     /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
-    /// over all nodes; `single`: whether a node over a joint has a pair with one facet.
+    /// over all nodes; `at_joints`: what nodes over joints have.
     pub fn of_itself(
         side: &Surface,
         [later, earlier]: [NodesWithDepth; 2],
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
-        single: bool,
+        at_joints: AtJoints,
     ) -> Combined {
         let folds = Arc::new(Folds::new(side, piece, first_node, reference));
         let of = |nodes: NodesWithDepth, which: Side| {
             let against = Self::new(nodes.nodes, side.clone(), Detection::ClosestPoint);
-            let against = against.with_allowed(nodes.depths).with_single_facets(single);
+            let against = against.with_allowed(nodes.depths).with_joints(at_joints);
             against.of_body(side.clone()).folding(folds.clone(), which)
         };
         Combined::both(of(later, Side::Later), of(earlier, Side::Earlier).reversed())

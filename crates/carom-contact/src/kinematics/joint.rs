@@ -19,6 +19,22 @@ use crate::rows::Rows;
 /// above round-off, and far below what a node slides in a step.
 pub(super) const AT_JOINT: f64 = 1e-7;
 
+/// What a node over a blunt joint of facets has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AtJoints {
+    /// Whether it has the mean gap of all facets there; otherwise that of one of them.
+    pub mean: bool,
+    /// Whether it has a pair with each facet behind which it lies; the springs of several would add
+    /// up.
+    pub several: bool,
+}
+
+impl Default for AtJoints {
+    fn default() -> Self {
+        Self { mean: true, several: true }
+    }
+}
+
 /// Contact of nodes with single facets, of which that with joints is made.
 pub(super) trait OnFacets {
     /// Dimension of the positions.

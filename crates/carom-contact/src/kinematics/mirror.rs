@@ -5,11 +5,25 @@
 //! A node on the axis of a half model lies on such a facet to within round-off, and would be
 //! nearest to it.
 
+use std::collections::HashSet;
+
 use carom_algebra::Vector;
 use carom_solid::Bounds;
 
 /// Differences of a coordinate, relative to the size of a facet, up to which it lies in a plane.
 const FLAT: f64 = 1e-9;
+
+/// What continues the surface of a body where a facet begins that is no surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Continuation {
+    /// The facet is a surface.
+    #[default]
+    None,
+    /// The mirror image of the body: the facet lies in a plane of symmetry.
+    Mirror,
+    /// Another body: a tie has closed the facet.
+    Tied,
+}
 
 /// Whether a facet lies in a plane of symmetry at the positions `y`, flat over all nodes with
 /// `dimension` components each; `bodies`: a box around all bodies; `is_fixed`: whether a node is
@@ -41,6 +55,13 @@ pub fn is_mirror(
     };
     let is_held = |node: &usize| (0..dimension).all(|axis| is_fixed(*node, axis));
     (0..dimension).any(is_across) && !nodes.iter().all(is_held)
+}
+
+/// Whether a set of facets, given by their nodes in ascending order, contains that of these nodes.
+pub(super) fn contains(facets: &HashSet<Vec<usize>>, nodes: &[usize]) -> bool {
+    let mut nodes = nodes.to_vec();
+    nodes.sort_unstable();
+    facets.contains(&nodes)
 }
 
 /// A vector without twice its component along a direction of length one.

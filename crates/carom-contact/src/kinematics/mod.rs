@@ -52,6 +52,7 @@ pub(crate) use facets::Facets;
 pub use facets::{Depth, OnFacet};
 pub use folds::Side;
 pub(crate) use folds::{Folds, Turns};
+pub use joint::AtJoints;
 pub use mortar::{Mortar, Quadrature};
 pub use node_to_facet::{ContactPoint, Detection, NodeToFacet};
 pub use node_to_obstacle::NodeToObstacle;
@@ -81,6 +82,10 @@ pub struct NodalPressure {
     /// Force per area of the reference surface, ≥ 0.
     pub nominal: f64,
 }
+
+/// Excess |ξ| − 1 up to which a contact point lies on its facet: a node that slides along a joint
+/// has it within a second-order distance of its end.
+const ON_FACET: f64 = 1e-5;
 
 /// A method to find pairs of two sides and to measure their gaps.
 pub trait Kinematics: std::fmt::Debug + Send + Sync {
@@ -134,7 +139,13 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
 
     /// Whether the contact point of a pair lies on its facet, not on its extension.
     fn is_on_facet(&self, pair: &Pair) -> bool {
-        pair.xi.abs() <= 1.0
+        pair.xi.abs() <= 1.0 + ON_FACET
+    }
+
+    /// Whether a pair keeps the depth at which it began. A contact point that is frozen leaves a
+    /// depth in every step, and the next one closes it.
+    fn keeps_depth(&self, _pair: &Pair) -> bool {
+        true
     }
 
     /// For every secondary node, by index, the height over the facet that it faces of the smooth

@@ -18,7 +18,7 @@ use super::facets::{Facets, OnFacet};
 use super::facing::{NEAR_END, PAST_SIDE, REACH, Reached};
 use super::folds::{Folds, Side, Turns};
 use super::hand_over::{Held, Measured, Next, Sliding};
-use super::joint::OnFacets;
+use super::joint::{AtJoints, OnFacets};
 use super::opposed::is_left;
 use super::passed::{Boxes, Passed, Paths};
 use super::reversed::{Corners, Faced};
@@ -75,7 +75,7 @@ pub struct NodeToFacet {
     /// The boundary of the body to which the secondary nodes belong, and the facets at each of its
     /// nodes.
     pub(super) own: Option<(Surface, HashMap<usize, Vec<usize>>)>,
-    pub(super) single: bool,
+    pub(super) at_joints: AtJoints,
     /// For nodes of the primary side against the secondary one: their corners.
     reversed: Option<Corners>,
     tools: Mutex<Tools>,
@@ -104,7 +104,7 @@ impl NodeToFacet {
             radii: Vec::new(),
             folds: None,
             own: None,
-            single: false,
+            at_joints: AtJoints::default(),
             reversed: None,
             tools: Mutex::new(tools),
         }
@@ -141,10 +141,10 @@ impl NodeToFacet {
         Self { radii, ..self }
     }
 
-    /// Contact in which a node over a joint has a pair with one facet, if it is `single`.
+    /// Contact with another rule for nodes over joints.
     #[must_use]
-    pub fn with_single_facets(self, single: bool) -> Self {
-        Self { single, ..self }
+    pub fn with_joints(self, at_joints: AtJoints) -> Self {
+        Self { at_joints, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -239,7 +239,8 @@ impl NodeToFacet {
                 }
                 // Two springs at a blunt joint are too stiff, and the second begins with a depth.
                 Next::Concave(..)
-                    if self.single && self.is_blunt(pair.facet, u8::from(pair.xi > 0.0), placed.flat()) =>
+                    if !self.at_joints.several
+                        && self.is_blunt(pair.facet, u8::from(pair.xi > 0.0), placed.flat()) =>
                 {
                     Next::Stay
                 }
@@ -312,6 +313,10 @@ impl Kinematics for NodeToFacet {
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
         self.primary.facet(pair.facet).nodes
+    }
+
+    fn keeps_depth(&self, _: &Pair) -> bool {
+        !self.is_frozen()
     }
 
     fn facets(&self, _: usize) -> usize {

@@ -290,6 +290,10 @@ impl Kinematics for NodeToObstacle {
         Some(now * before.inverse())
     }
 
+    fn keeps_depth(&self, _: &Pair) -> bool {
+        false
+    }
+
     fn facets(&self, _: usize) -> usize {
         self.shape.pieces()
     }

@@ -297,6 +297,10 @@ impl Kinematics for TipToFacet {
         &[]
     }
 
+    fn keeps_depth(&self, _: &Pair) -> bool {
+        false
+    }
+
     fn facets(&self, _: usize) -> usize {
         self.side.facets()
     }

@@ -7,7 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use carom_contact::{InsideItself, Rows, Side};
+use carom_contact::{InsideItself, Pair, Rows, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::check::skins::{BodySkin, folding_skin, kinks, length, part_of, skin};
@@ -352,7 +352,7 @@ impl Penetration {
                 if contact.kinematics.measure(&mut pair, y, rows).is_ok() {
                     let node = contact.node(&pair);
                     let facet = contact.kinematics.facet_nodes(&pair);
-                    paired.push((node, (-rows.row(0).gap).max(0.0), of_facet(facet)));
+                    paired.push((node, (pair.depth - rows.row(0).gap).max(0.0), of_facet(facet)));
                 }
             }
             // A node in a concave corner has two pairs: the deeper one counts.
@@ -425,6 +425,12 @@ impl Penetration {
             {
                 limit = limit.max(model.contacts[k].depths.others * watched.length.max(entered.length));
             }
+            if depth > limit
+                && let Some(k) = *contact
+                && let Some(state) = state
+            {
+                limit += kept(&model.contacts[k], &state.pairs[k], node);
+            }
             if depth > limit && found.beyond.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 let what = if is_node { What::Node } else { What::Edge };
                 found.beyond = Some(Inside { node, what, depth, limit });
@@ -461,6 +467,12 @@ const CHORDS: f64 = 0.01;
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
     (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()
+}
+
+/// The depth that the pairs of a node keep.
+fn kept(contact: &Contact, pairs: &[Pair], node: usize) -> f64 {
+    let own = pairs.iter().filter(|pair| contact.node(pair) == node);
+    own.map(|pair| pair.depth).fold(0.0, f64::max)
 }
 
 /// Whether a contact leaves a node that it constrains to a sharp edge that the node faces.

@@ -2,6 +2,7 @@
 
 pub(crate) mod augmented;
 pub mod constraints;
+pub(crate) mod depths;
 pub(crate) mod forces;
 pub(crate) mod friction;
 pub(crate) mod friction_tangent;

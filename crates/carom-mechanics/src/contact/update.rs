@@ -10,6 +10,7 @@ use carom_contact::{
 
 use crate::contact::augmented;
 use crate::contact::constraints::Constraints;
+use crate::contact::depths::{begin, beginning, ease};
 use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::rounds::Rounds;
 use crate::linear::system::System;
@@ -39,9 +40,10 @@ pub(crate) type Events = Vec<(usize, PairEvent)>;
 
 /// Prepares the pairs for a step from positions `y`.
 pub(crate) fn start_step(model: &Model, y: &[f64], pairings: &mut [Pairing]) {
-    for (contact, pairing) in model.contacts.iter().zip(pairings) {
+    for (contact, pairing) in model.contacts.iter().zip(&mut *pairings) {
         pairing.pairs.iter_mut().for_each(|pair| contact.kinematics.start_step(pair, y));
     }
+    ease(model, y, pairings);
 }
 
 /// Updates the pairs for motion from `before` to `now`; returns whether that requires another
@@ -178,7 +180,16 @@ impl<'a> ContactUpdate<'a> {
     /// Finds the pairs of an iterate at positions `now`; returns whether that requires another
     /// solve.
     pub(crate) fn search(&mut self, now: &[f64], pairings: &mut [Pairing]) -> bool {
-        search(self.equations.model, self.before, now, pairings, &mut self.events)
+        let changed = search(self.equations.model, self.before, now, pairings, &mut self.events);
+        self.begin(pairings);
+        changed
+    }
+
+    /// Notes the depths at which pairs begin. Load steps create no energy, and keep none.
+    fn begin(&self, pairings: &mut [Pairing]) {
+        let Equations { model, state, stage, .. } = self.equations;
+        let before = beginning(state, self.before).filter(|_| !stage.is_static());
+        begin(model, before, pairings);
     }
 
     /// Updates active sets and pairs for an iterate; returns whether one changed. `settled`: the
@@ -226,9 +237,12 @@ impl<'a> ContactUpdate<'a> {
     /// Hands over pairs that slid well past the end of their facet; returns whether there was one.
     fn update_facets(&mut self, now: &mut Evaluation) -> bool {
         let Evaluation { at, y, .. } = now;
-        each(self.equations.model, &mut at.pairings, &mut self.events, |contact, pairing, events| {
-            contact.kinematics.update_facets(y, pairing, events)
-        })
+        let changed =
+            each(self.equations.model, &mut at.pairings, &mut self.events, |contact, pairing, events| {
+                contact.kinematics.update_facets(y, pairing, events)
+            });
+        self.begin(&mut at.pairings);
+        changed
     }
 
     /// Updates each contact's active set; a released pair loses its multiplier. Returns whether one

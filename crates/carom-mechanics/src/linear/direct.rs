@@ -36,6 +36,8 @@ const REMEMBERED: usize = 2;
 /// Stiffness added along the rows, as a multiple of theirs: enough to outweigh the curvature terms
 /// of contact.
 const STIFFENING: f64 = 10.0;
+/// Stiffness added along the rows where only motions that keep all gaps matter.
+const HELD: f64 = 1e4;
 /// Margin around the nodes of the rows, relative to their extent.
 const MARGIN: f64 = 0.3;
 
@@ -132,8 +134,14 @@ impl Direct {
     }
 
     /// The dense system on the interface. A spring adds its stiffness instead of a row. Returns
-    /// whether all is positive definite.
-    fn constrain(&mut self, model: &Model, rows: &Constraints, curved: bool) -> Result<bool, LinearError> {
+    /// whether all is positive definite. `stiffening`: stiffness added along the rows.
+    fn constrain(
+        &mut self,
+        model: &Model,
+        rows: &Constraints,
+        curved: bool,
+        stiffening: f64,
+    ) -> Result<bool, LinearError> {
         let Some(condensed) = (if self.of_mass { &self.mass } else { &self.tangent }) else {
             return Err(no_factor(model));
         };
@@ -182,7 +190,7 @@ impl Direct {
             }
         }
         if !self.of_mass {
-            saddle.augment(STIFFENING);
+            saddle.augment(stiffening);
         }
         Ok(saddle.factor() && (self.of_mass || self.positive))
     }
@@ -255,7 +263,7 @@ impl Preconditioner for Direct {
             self.mass = Some(factor);
         }
         self.of_mass = true;
-        Ok(self.constrain(model, rows, false).map(|_| ())?)
+        Ok(self.constrain(model, rows, false, STIFFENING).map(|_| ())?)
     }
 
     /// Those of the rows and nearby ones on the sides in contact, so that the choice lasts. The
@@ -292,9 +300,16 @@ impl Preconditioner for Direct {
         self.of_mass = false;
         // An inaccurate multiplier can make the curvature terms too large: without second
         // derivatives there is still a descent direction.
-        Ok(self.constrain(model, rows, true)?
-            || self.constrain(model, rows, false)?
-            || self.constrain(model, rows, true)?)
+        Ok(self.constrain(model, rows, true, STIFFENING)?
+            || self.constrain(model, rows, false, STIFFENING)?
+            || self.constrain(model, rows, true, STIFFENING)?)
+    }
+
+    fn is_stable(&mut self, model: &Model, rows: &Constraints) -> Result<Option<bool>, LinearError> {
+        self.of_mass = false;
+        self.constrain(model, rows, true, HELD)?;
+        let is_inner_stable = self.tangent.as_ref().map(Condensed::is_inner_positive);
+        Ok(is_inner_stable.map(|is_stable| is_stable && self.saddle.is_positive()))
     }
 
     fn regularity(&self) -> Option<f64> {

@@ -73,6 +73,15 @@ pub trait Preconditioner: Send + Sync {
     /// If the rows are linearly dependent.
     fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError>;
 
+    /// Whether the tangent is positive definite on the kernel of the rows, where that is known:
+    /// then an equilibrium is stable. The tangent has been formed in double precision.
+    ///
+    /// # Errors
+    /// If the rows are linearly dependent.
+    fn is_stable(&mut self, _model: &Model, _rows: &Constraints) -> Result<Option<bool>, LinearError> {
+        Ok(None)
+    }
+
     /// See [`carom_algebra::Saddle::regularity`].
     fn regularity(&self) -> Option<f64>;
 

@@ -174,6 +174,28 @@ impl System {
         Ok(())
     }
 
+    /// Whether the equilibrium of a load step is stable, where that is known: its tangent, which
+    /// the next step starts with, is positive definite for all motions that keep closed gaps
+    /// closed.
+    ///
+    /// # Errors
+    /// If a load has no value, or the rows are linearly dependent.
+    pub(crate) fn is_stable(
+        &mut self,
+        equations: &Equations,
+        now: &Evaluation,
+        renewal: &mut Renewal,
+    ) -> Result<Option<bool>, Rejected> {
+        let model = equations.model;
+        let rows = Constraints::of(equations, now);
+        let last = renewal.frozen.point.as_deref();
+        let boundary = self.preconditioner.boundary(model, &now.place, &rows, last);
+        let point = equations.point(&now.place, &boundary);
+        self.tangent_at(model, &point, true)?;
+        renewal.renewed(point);
+        Ok(self.preconditioner.is_stable(model, &rows)?)
+    }
+
     /// Prepares solves with [M Gᵀ; G 0] over the free dofs that have mass.
     ///
     /// # Errors

@@ -54,6 +54,8 @@ pub(crate) struct Effort {
     /// The smallest relative singular value of the interface with friction at the solution,
     /// negative where its determinant is; none without friction.
     pub regularity: Option<f64>,
+    /// Whether the equilibrium of a load step is unstable.
+    pub unstable: bool,
     /// Contact and node of the closed gaps that had no multiplier in the last solve.
     pub dependent: Vec<(usize, usize)>,
     /// The point of the reused factor.
@@ -86,6 +88,7 @@ pub(crate) fn solve_stage(
                 now = newton.next_round(now)?;
                 continue;
             }
+            newton.assess(&now)?;
             (newton.effort.events, newton.effort.frozen) = (newton.contact.events, newton.renewal.finish());
             return Ok((now, newton.effort));
         }
@@ -201,6 +204,22 @@ impl<'a> Newton<'a> {
         self.work.linear.restart();
         self.equations.change_contacts(&mut now, &mut self.work.timings)?;
         Ok(now)
+    }
+
+    /// Notes whether the equilibrium of a load step is stable. With friction, whose tangent is not
+    /// symmetric, and without a factor it is not known.
+    fn assess(&mut self, now: &Evaluation) -> Result<(), Rejected> {
+        let equations = self.equations;
+        let is_known = equations.stage.is_static()
+            && !equations.model.has_friction()
+            && !self.work.system.preconditioner.is_iterative();
+        if is_known {
+            let Workspace { system, timings, .. } = &mut *self.work;
+            let is_stable =
+                timed(&mut timings.factor, || system.is_stable(equations, now, &mut self.renewal))?;
+            self.effort.unstable = is_stable == Some(false);
+        }
+        Ok(())
     }
 
     /// Starts from another guess.

@@ -2,7 +2,7 @@
 
 use carom_contact::{Pair, Rows};
 
-use super::watch::gap_at;
+use crate::contact::depths::gap_at;
 use crate::model::Contact;
 use crate::state::State;
 

@@ -121,6 +121,7 @@ impl Stepper for Implicit {
             if let Some(regularity) = effort.regularity.filter(|regularity| *regularity < SINGULAR) {
                 report.ambiguity = Some(report.ambiguity.map_or(regularity, |before| before.min(regularity)));
             }
+            report.unstable |= effort.unstable;
             report.dependent.extend(effort.dependent);
             report.events.extend(effort.events);
             next.frozen = effort.frozen;

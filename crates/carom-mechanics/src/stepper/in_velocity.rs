@@ -19,6 +19,7 @@ use carom_time::ImpulseShares;
 use super::impulses::Impulses;
 use super::impulsive;
 use super::watch::measure_into;
+use crate::contact::depths::{begin, beginning};
 use crate::contact::update::search;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -57,6 +58,7 @@ pub(super) fn solve_in_velocity(
         let mut events = Vec::new();
         let error = timed(&mut work.timings.contact, || {
             search(model, &state.y, &at, &mut found, &mut events);
+            begin(model, beginning(state, &state.y), &mut found);
             measure_into(model, &at, &mut found, &mut measured)?;
             Ok::<f64, Rejected>(close(model, &mut found, &measured))
         })?;

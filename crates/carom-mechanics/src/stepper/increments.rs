@@ -10,7 +10,8 @@ use super::forward::Forward;
 use super::rubbing::{combined, friction_state, kind};
 use super::scratch::Scratch;
 use super::tied_mass::TiedMass;
-use super::watch::{active, carry_into, gap_at, measure_into, moves, overconstrained};
+use super::watch::{active, carry_into, measure_into, moves, overconstrained};
+use crate::contact::depths::{begin, beginning, ease, gap_at};
 use crate::contact::independent::{HELD, is_dependent};
 use crate::contact::loose::loose;
 use crate::contact::update::search;
@@ -78,6 +79,7 @@ impl Increments<'_> {
         scratch.along.clear();
         scratch.kinds.clear();
         carry_into(model, self.state, Pairing::near, &mut scratch.pairings);
+        ease(model, &self.state.y, &mut scratch.pairings);
         self.move_freely(velocity, scratch);
         let mut row = Rows::new(model.dimension);
         let mut is_behind = false;
@@ -150,6 +152,7 @@ impl Increments<'_> {
         loaded.clear();
         loaded.extend(forces(pairings));
         search(model, &state.y, &moved.to, pairings, &mut report.events);
+        begin(model, beginning(state, &state.y), pairings);
         // Gaps of new pairs are measured below with all others.
         let moved_on = !forces(pairings).eq(loaded.iter().copied());
         measure_into(model, &state.y, pairings, rows)?;

@@ -46,6 +46,8 @@ pub struct StepReport {
     /// Where stick and slip are not unique: the smallest relative singular value of the interface,
     /// with the sign of its determinant.
     pub ambiguity: Option<f64>,
+    /// Whether the equilibrium of a load step is unstable.
+    pub unstable: bool,
     /// Contact and node of closed gaps without multipliers, because they depend on others.
     pub dependent: Vec<(usize, usize)>,
     /// Jump of kinetic energy where contact or stick begins.

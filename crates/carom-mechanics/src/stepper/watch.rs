@@ -5,6 +5,7 @@
 use carom_contact::{Pair, Pairing, Row, Rows};
 
 use crate::check::watched::has_gaps;
+use crate::contact::depths::gap_at;
 use crate::contact::independent::{DEPENDENT, on_free_dofs};
 use crate::model::{Contact, Model};
 use crate::rejected::Rejected;
@@ -29,14 +30,6 @@ pub(super) fn carry_into(
         });
         *pairing = watch(std::mem::take(&mut pairing.pairs));
     }
-}
-
-/// Gap of a pair at positions `y`, updating its contact point; infinite without a unique closest
-/// point, for a remote pair. `row` is overwritten.
-pub(super) fn gap_at(contact: &Contact, pair: &mut Pair, y: &[f64], row: &mut Rows) -> f64 {
-    row.clear();
-    let found = contact.kinematics.measure(pair, y, row);
-    found.map_or(f64::INFINITY, |()| row.row(0).gap)
 }
 
 /// Whether a force along a row moves anything: not if supports constrain all its nodes.

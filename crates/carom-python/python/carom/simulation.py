@@ -191,7 +191,8 @@ class Simulation:
         # Other columns, such as moments, may have the unit of an energy.
         names = list(units)
         first, last = names.index("kinetic"), names.index("energy_scale")
-        return {name: row[name] for name in names[first : last + 1] if units[name] == energy}
+        own = names[first : last + 1] + [name for name in names if name == "plastic_work"]
+        return {name: row[name] for name in own if units[name] == energy}
 
     @property
     def contacts(self) -> Table:

@@ -1,7 +1,7 @@
 //! The parties of a contact: bodies, and obstacles that move.
 
 use super::episode::Episode;
-use crate::{Run, body_of};
+use crate::{ContactRow, Run, body_of};
 
 /// A body, or an obstacle that moves; none: an obstacle that is fixed.
 pub(super) type Party<'a> = Option<&'a str>;
@@ -18,6 +18,34 @@ pub(super) fn taking_part(run: &Run, episode: Episode) -> Vec<&str> {
     names.dedup();
     let met = names.into_iter().filter_map(|name| parties(run, name)).filter(|[one, other]| one != other);
     met.flatten().flatten().collect()
+}
+
+/// The parties of all contacts of a case.
+pub(super) fn in_contacts(run: &Run) -> Vec<&str> {
+    let contacts = run.manifest.facts.contacts.iter();
+    contacts.filter_map(|spec| parties(run, &spec.name)).flatten().flatten().collect()
+}
+
+/// The part of an episode in which a body itself is in contact with something else, where the
+/// episode consists of contacts of other bodies, too: from its first row to the row that ends its
+/// contact, interruptions shorter than `bridge` included.
+pub(super) fn own_episode(run: &Run, body: &str, episode: Episode, bridge: f64) -> Episode {
+    let times = run.times();
+    let is_own = |contact: &str| {
+        parties(run, contact).is_some_and(|[one, other]| one != other && [one, other].contains(&Some(body)))
+    };
+    let (own, others): (Vec<&ContactRow>, Vec<&ContactRow>) = run
+        .contact
+        .iter()
+        .filter(|row| episode.contains(times, row.time))
+        .partition(|row| is_own(&row.contact));
+    let mut rows: Vec<usize> = own.iter().map(|row| times.partition_point(|time| *time < row.time)).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    let Some(&start) = rows.first().filter(|_| !others.is_empty()) else { return episode };
+    let goes_on = |two: &&[usize]| times[two[1]] - times[two[0] + 1] < bridge;
+    let end = rows[rows.windows(2).take_while(goes_on).count()] + 1;
+    Episode { start, end: (end < times.len()).then_some(end) }
 }
 
 /// The parties of a contact, that of the secondary side first.

@@ -8,14 +8,18 @@
 //! p² = p₀² (1 − ((s − c)/a)²)        fitted to p² at the nodes by least squares: linear in p₀², p₀²c/a², p₀²/a²
 //! ```
 //!
-//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the largest pressure is at
-//! an outermost node, the model is one half of a symmetric problem, and c is the coordinate of that
-//! node. Where the parabola leaves more than half of the variance of p², as under a flat punch with
-//! its peaks at the edges, there is no ellipse. Of several contacts, the one with the largest load
-//! is used. Places along the contact are those of the plane; in space there are none.
+//! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the pressure at one
+//! outermost node alone exceeds half of the largest one, the model is one half of a symmetric
+//! problem, and c is the coordinate of that node: ellipses end with small pressures. Where the
+//! parabola leaves more than half of the variance of p², as under a flat punch with its peaks at
+//! the edges, there is no ellipse. Of several contacts, the one with the largest load is used.
+//! Places along the contact are those of the plane; in space there are none.
 
 use super::samples::extreme;
 use crate::{ContactRow, Run};
+
+/// Component of a normal along x or y, over the other one, that is round-off.
+const UPRIGHT: f64 = 1e-9;
 
 /// Peak and half-width of the ellipse fitted to pressures at given coordinates.
 ///
@@ -24,8 +28,10 @@ use crate::{ContactRow, Run};
 pub fn hertz(places: &[f64], pressures: &[f64]) -> Option<(f64, f64)> {
     let first = places.iter().copied().reduce(f64::min)?;
     let last = places.iter().copied().reduce(f64::max)?;
-    let top = extreme(pressures, f64::gt).map(|(i, _)| places[i])?;
-    let half = top == first || top == last;
+    let largest = extreme(pressures, f64::gt)?.1;
+    let presses = |end: f64| places.iter().zip(pressures).any(|(s, p)| *s == end && *p > 0.5 * largest);
+    let half = presses(first) != presses(last);
+    let top = if presses(first) { first } else { last };
     // Coordinates scaled to −1 … 1 keep the normal equations well conditioned.
     let (middle, scale) =
         if half { (top, last - first) } else { (0.5 * (first + last), 0.5 * (last - first)) };
@@ -112,13 +118,14 @@ fn at_rest(run: &Run) -> Option<Vec<&ContactRow<'static>>> {
 }
 
 /// Coordinates of points of rows, in the plane, along the tangent that is orthogonal to the mean
-/// normal.
+/// normal, towards +x, or +y where it is vertical: which body is the secondary one does not matter.
 fn places(run: &Run, rows: &[&ContactRow], point: impl Fn(&ContactRow) -> [f64; 2]) -> Option<Vec<f64>> {
     if run.manifest.facts.dimension == 3 {
         return None;
     }
     let [x, y] = rows.iter().fold([0.0, 0.0], |n, r| std::array::from_fn(|i| n[i] + r.normal[i]));
-    let length = f64::hypot(x, y);
+    let is_backward = y < -UPRIGHT * x.abs() || y.abs() <= UPRIGHT * x.abs() && x > 0.0;
+    let length = if is_backward { -f64::hypot(x, y) } else { f64::hypot(x, y) };
     let along = |[px, py]: [f64; 2]| (y * px - x * py) / length;
     Some(rows.iter().map(|row| along(point(row))).collect())
 }

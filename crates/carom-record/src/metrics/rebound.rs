@@ -1,8 +1,8 @@
-//! The impact of the first episode: the striker, what it strikes, Newton's coefficient of
-//! restitution, and the time at which approach turns into separation.
+//! The impact of the first episode: the striker and its own contact in it, what it strikes,
+//! Newton's coefficient of restitution, and the time at which approach turns into separation.
 //!
 //! ```text
-//! e = −(w⁺·n)/(w⁻·n)        w = v − v_other, before the episode and after it
+//! e = −(w⁺·n)/(w⁻·n)        w = v − v_other, before the contact of the striker and after it
 //! n = Σ −λ n_c / |Σ −λ n_c| over the rows of contact.csv of the striker in the episode
 //! turning_time              w(t)·n = 0
 //! ```
@@ -15,9 +15,9 @@
 
 use carom_formula::Formula;
 
-use super::episode::{Episode, first_episode};
+use super::episode::{Episode, default_bridge, first_episode};
 use super::given::{Given, vector};
-use super::parties::{Party, parties};
+use super::parties::{Party, own_episode, parties};
 use super::striker::striker;
 use crate::{History, Run};
 
@@ -34,6 +34,8 @@ const DRIVEN: f64 = 1e-3;
 pub struct Impact<'a> {
     /// Name of the striker.
     pub striker: &'a str,
+    /// Its contact in the first episode.
+    episode: Episode,
     /// The body or obstacle that is struck; none: a fixed obstacle.
     pub others: Vec<Party<'a>>,
     /// Direction of the normal contact impulse on the striker, of length 1.
@@ -87,6 +89,7 @@ impl<'a> Impact<'a> {
         }
         let episode = first_episode(&run.history).ok_or("no contact closed")?;
         let striker = striker(run).ok_or("no body moves")?;
+        let episode = own_episode(run, striker, episode, default_bridge(&run.history));
         let before = episode.start.checked_sub(1).ok_or("contact is closed at the start")?;
         if episode.is_within_a_step(&run.history) {
             return Err("contact begins and ends between two rows");
@@ -137,6 +140,7 @@ impl<'a> Impact<'a> {
         let length = impulse.iter().fold(0.0, |length, x| f64::hypot(length, *x));
         (length > 0.0).then(|| Self {
             striker,
+            episode,
             others,
             normal: impulse.map(|x| x / length),
             arms: moments.iter().map(Moment::arm).collect(),
@@ -159,21 +163,31 @@ impl<'a> Impact<'a> {
         Some(held.zip(turning).map(|(v, turning)| v + turning).collect())
     }
 
-    /// Whether supports move a party along the normal with another velocity at the end of the first
-    /// episode than before it: the separation is then their work.
+    /// Whether supports, or the motion of an obstacle, move a party along the normal with another
+    /// velocity at the end of the contact than before it: the separation is then their work.
     fn is_driven(&self, run: &Run) -> bool {
-        let Some(Episode { start, end: Some(end) }) = first_episode(&run.history) else { return false };
-        let changes = |body: &str| {
-            let rows = [start.saturating_sub(1), end];
-            let [Some(before), Some(after)] = rows.map(|row| prescribed(run, body, run.times()[row])) else {
-                return false;
-            };
+        let Episode { start, end: Some(end) } = self.episode else { return false };
+        let changes = |party: &str| {
+            let rows = [start.saturating_sub(1), end].map(|row| self.driven(run, party, row));
+            let [Some(before), Some(after)] = rows else { return false };
             let rates = before.into_iter().zip(after).map(|(before, after)| before.zip(after));
             let differences = rates.map(|rates| rates.map_or(0.0, |(before, after)| after - before));
             let along: f64 = differences.zip(self.normal).map(|(change, n)| change * n).sum();
             along.abs() > DRIVEN * self.approach
         };
         self.others.iter().copied().flatten().chain([self.striker]).any(changes)
+    }
+
+    /// Velocity that supports, or the motion of an obstacle, prescribe in a row, by axis; none
+    /// along a free axis, and none for the whole if it is unknown.
+    fn driven(&self, run: &Run, party: &str, row: usize) -> Option<[Option<f64>; 3]> {
+        let is_obstacle = run.manifest.facts.contacts.iter().any(|spec| spec.name == party && spec.moves);
+        let has_motion = run.history.column(&format!("{party}.reaction_x")).is_some();
+        if !(is_obstacle && has_motion) {
+            return prescribed(run, party, run.times()[row]);
+        }
+        let velocity = self.velocity(run, Some(party), row)?;
+        Some(std::array::from_fn(|axis| velocity.get(axis).copied()))
     }
 
     /// w·n in a row; none if parties of different velocities are struck.
@@ -193,7 +207,7 @@ impl<'a> Impact<'a> {
 pub(super) fn turning_time(given: &Given) -> Option<f64> {
     let run = given.run?;
     let impact = Impact::first(run).ok()?;
-    let rows = given.rows()?;
+    let rows = impact.episode.span(given.history);
     let mut before = (given.time(rows.start), -impact.approach);
     for row in rows.skip(1) {
         let (earlier, approaching) = before;
@@ -216,7 +230,9 @@ pub(super) fn restitution(run: &Run) -> Option<f64> {
 /// Why a run has no coefficient of restitution.
 pub fn no_rebound(run: &Run) -> Option<&'static str> {
     match Impact::first(run) {
-        Ok(impact) if impact.is_driven(run) => Some("a support changes the velocity of a body meanwhile"),
+        Ok(impact) if impact.is_driven(run) => {
+            Some("a support or the motion of an obstacle changes a velocity meanwhile")
+        }
         Ok(Impact { separation: Some(separation), .. }) if separation >= 0.0 => None,
         Ok(Impact { separation: Some(_), .. }) => {
             Some("the bodies approach each other when the first contact ends")

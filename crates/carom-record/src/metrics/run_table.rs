@@ -23,7 +23,7 @@ pub const REBOUND: [Definition; 2] = [
         Unit::None,
         "−(w⁺·n)/(w⁻·n), w = v − v_other, n = Σ −λ n_c",
         "Newton 1687",
-        "Newton's coefficient of restitution: −(relative velocity after)/(relative velocity before the first episode) of the centres of the striker and of what it strikes, along the normal contact impulse; fixed obstacles are at rest, one that moves has that of its point at the mean place of the contact relative to its centre, a tied body has none, and a body moves like its supports along an axis in which they hold it",
+        "Newton's coefficient of restitution: −(relative velocity after)/(relative velocity before the first contact) of the centres of the striker and of what it strikes, along the normal contact impulse; fixed obstacles are at rest, one that moves has that of its point at the mean place of the contact relative to its centre, a tied body has none, and a body moves like its supports along an axis in which they hold it",
         |g| rebound::restitution(g.run?),
     ),
 ];
@@ -59,7 +59,7 @@ pub(crate) const PRESSURE: [Definition; 6] = [
         Unit::Length,
         "Σ λᵢ sᵢ/Σ λᵢ",
         OWN,
-        "coordinate along the contact, across its mean normal, of the resultant pressure at the end of a static run in the plane",
+        "coordinate along the contact, across its mean normal and towards +x (or +y), of the resultant pressure at the end of a static run in the plane",
         |g| pressure::center(g.run?),
     ),
     d(

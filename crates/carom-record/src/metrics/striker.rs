@@ -5,9 +5,9 @@
 //! apex   vertex of the parabola through the highest row of its centre and the adjacent rows
 //! ```
 
-use super::episode::first_episode;
+use super::episode::{default_bridge, first_episode};
 use super::given::{Given, norms, vector};
-use super::parties::taking_part;
+use super::parties::{in_contacts, own_episode, taking_part};
 use super::samples::extreme;
 use crate::{History, Run};
 
@@ -18,7 +18,10 @@ const ROUND_OFF: f64 = 1e-9;
 /// the row before it (without contact, in the first row); the first one of those that are equally
 /// fast. An obstacle whose motion is prescribed has reactions, and is none.
 pub fn striker(run: &Run) -> Option<&str> {
-    let part = first_episode(&run.history).map_or(Vec::new(), |episode| taking_part(run, episode));
+    let mut part = first_episode(&run.history).map_or(Vec::new(), |episode| taking_part(run, episode));
+    if part.is_empty() {
+        part = in_contacts(run);
+    }
     fastest(&run.history, |body| part.is_empty() || part.contains(&body))
 }
 
@@ -41,7 +44,9 @@ pub(super) fn apex(given: &Given) -> Option<(f64, f64)> {
     let history = given.history;
     let striker = given.run.map_or_else(|| fastest(history, |_| true), striker)?;
     let center = *vector(history, &format!("{striker}.center")).last()?;
-    let after = given.first()?.end?;
+    let first = given.first()?;
+    let own = |run| own_episode(run, striker, first, default_bridge(history));
+    let after = given.run.map_or(first, own).end?;
     let (i, top) = extreme(&center[after..], f64::gt).map(|(i, x)| (i + after, x))?;
     let t = history.times();
     let y = center;

@@ -212,7 +212,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Length,
         "max (0, −g)",
         TABLES,
-        "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges, constrained by the contact or not (column penetration_secondary: constrained nodes)",
+        "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges (not where a body meets itself), constrained by the contact or not (column penetration_secondary: constrained nodes)",
         |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
     ),
     d(

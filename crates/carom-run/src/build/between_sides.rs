@@ -3,10 +3,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use carom_case::{self as case, Case, ContactSpec};
+use carom_case::{self as case, Case, ContactSpec, Problem, SKIN};
 use carom_contact::{
-    Boundary, Combined, ContactPoint, Detection, EdgePoints, EdgeToEdge, Kinematics, Mortar, NodeToFacet,
-    NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
+    AtJoints, Boundary, Combined, ContactPoint, Detection, EdgePoints, EdgeToEdge, Kinematics, Mortar,
+    NodeToFacet, NodeToObstacle, NodeToPatch, NodesWithDepth, Outward, Quadrature, Surface, TipToFacet,
 };
 use carom_mechanics::model::{BodyInstance, bounds};
 use carom_solid::{longest_edge, shortest_edge};
@@ -25,6 +25,8 @@ pub(super) struct Bodies<'a> {
     pub(super) fixed: &'a [bool],
     /// Whether a support moves a dof.
     pub(super) moved: &'a [bool],
+    /// Facets that a tie has closed.
+    pub(super) closed: &'a HashSet<Vec<usize>>,
 }
 
 /// A side of a contact.
@@ -35,6 +37,14 @@ pub(super) enum Which {
 }
 
 impl Bodies<'_> {
+    /// The side of a contact. A whole boundary is without the faces that a tie has closed: nothing
+    /// meets them, and to what slides over the joint of two bodies they would be walls.
+    pub(super) fn side(&self, name: &str, path: &str) -> Result<Side, Problem> {
+        let side = side(self.parts, name, path)?;
+        let is_skin = name.split_once('.').is_some_and(|(_, side)| side == SKIN);
+        Ok(if is_skin { side.without(self.closed) } else { side })
+    }
+
     /// Kinematics of contact `k` between two sides, of which one may be the other.
     pub(super) fn kinematics(&self, k: usize, secondary: &Side, primary: &Side) -> Box<dyn Kinematics> {
         match (self.case.dimension, primary.part == secondary.part) {
@@ -55,14 +65,14 @@ impl Bodies<'_> {
             case::ContactPoint::Closest => ContactPoint::Closest,
             case::ContactPoint::Frozen => ContactPoint::Frozen,
         };
-        let single = self.has_single_facets(k);
+        let at_joints = self.at_joints(k);
         let of_secondary = self.siblings(k, secondary.part, Which::Secondary);
         let of_primary = self.siblings(k, primary.part, Which::Primary);
         let side = self.surface(primary, &of_primary.concat());
         let opposite = self.surface(secondary, &of_secondary.concat());
         let nodes = NodeToFacet::new(without(&secondary.nodes, &of_secondary[0]), side.clone(), detection)
             .with_point(point)
-            .with_single_facets(single)
+            .with_joints(at_joints)
             .of_body(opposite.clone());
         if self.case.dimension == 1 || point == ContactPoint::Frozen {
             return Box::new(nodes);
@@ -72,7 +82,7 @@ impl Bodies<'_> {
         let against = |of: NodesWithDepth, own: &Surface, other: &Surface| {
             NodeToFacet::new(of.nodes, other.clone(), Detection::ClosestPoint)
                 .with_allowed(of.depths)
-                .with_single_facets(single)
+                .with_joints(at_joints)
                 .of_body(own.clone())
         };
         let both = Combined::both(nodes, against(theirs.clone(), &side, &opposite).reversed());
@@ -98,15 +108,15 @@ impl Bodies<'_> {
         let own = self.others(primary, &of_primary[0], secondary, &corners);
         let earlier =
             [&of_secondary, &of_primary].map(|of| of[0].iter().flat_map(|s| s.nodes.clone()).collect());
-        let single = self.has_single_facets(k);
+        let at_joints = self.at_joints(k);
         let edges = EdgeToEdge::new([opposite.clone(), side.clone()], &earlier, self.reference);
         let nodes = NodeToPatch::new(without(&secondary.nodes, &of_secondary[0]), side.clone())
-            .with_single_facets(single)
+            .with_joints(at_joints)
             .of_body(opposite.clone());
         let mut parts: Vec<Box<dyn Kinematics>> = vec![Box::new(nodes)];
         let others = NodeToPatch::new(own.nodes, opposite.clone())
             .with_allowed(own.depths)
-            .with_single_facets(single)
+            .with_joints(at_joints)
             .of_body(side.clone())
             .reversed();
         parts.push(Box::new(others));
@@ -184,12 +194,15 @@ impl Bodies<'_> {
         if stands && multipliers { mortar.without_held(self.fixed) } else { mortar }
     }
 
-    /// Whether a node over a joint has a pair with one facet: springs chatter, and load steps in
-    /// space may leave out the slip of a mean as one that depends on others.
-    fn has_single_facets(&self, k: usize) -> bool {
+    /// What nodes over joints have. The springs of several facets would add up, and in the plane
+    /// those of a mean chatter; in load steps of space the slip of a mean may depend on others.
+    fn at_joints(&self, k: usize) -> AtJoints {
         let spec = &self.case.contacts[k];
-        let rests_in_space = self.case.time.scheme.is_static() && self.case.dimension == 3;
-        spec.enforcement == case::Enforcement::Penalty || spec.friction.exists() && rests_in_space
+        let has_springs = spec.enforcement == case::Enforcement::Penalty;
+        let is_in_space = self.case.dimension == 3;
+        let rubs_at_rest = spec.friction.exists() && self.case.time.scheme.is_static();
+        let mean = if is_in_space { !rubs_at_rest } else { !has_springs };
+        AtJoints { mean, several: !has_springs }
     }
 
     fn itself(&self, k: usize, side: &Side) -> Combined {
@@ -197,9 +210,9 @@ impl Bodies<'_> {
         let surface = self.surface(side, &[]);
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
-        let single = self.has_single_facets(k);
+        let at_joints = self.at_joints(k);
         let against = |nodes: [NodesWithDepth; 2]| {
-            NodeToFacet::of_itself(&surface, nodes, &pieces, part.first_node, self.reference, single)
+            NodeToFacet::of_itself(&surface, nodes, &pieces, part.first_node, self.reference, at_joints)
         };
         let with_depth = self.others(side, &[], side, &surface.corners(self.reference));
         let both = against([NodesWithDepth::all_held(side.nodes.clone()), with_depth.clone()]);
@@ -218,7 +231,7 @@ impl Bodies<'_> {
         let earlier = self.others(side, &[], side, &sharp);
         let part = &self.parts[side.part];
         let pieces = part.body.mesh().pieces();
-        let single = self.has_single_facets(k);
+        let at_joints = self.at_joints(k);
         NodeToPatch::of_itself(
             &boundary,
             side.nodes.clone(),
@@ -226,7 +239,7 @@ impl Bodies<'_> {
             &pieces,
             part.first_node,
             self.reference,
-            single,
+            at_joints,
         )
     }
 
@@ -269,7 +282,7 @@ impl Bodies<'_> {
                 Which::Secondary => (other.primary == spec.primary, other.secondary.as_str()),
             };
             // There may be a contact per pair of bodies: few of them need their nodes.
-            if same { side(self.parts, name, "").ok().filter(|side| side.part == part) } else { None }
+            if same { self.side(name, "").ok().filter(|side| side.part == part) } else { None }
         };
         let earlier = &self.case.contacts[..k];
         let later = &self.case.contacts[k + 1..];
@@ -280,14 +293,18 @@ impl Bodies<'_> {
     fn surface(&self, side: &Side, siblings: &[Side]) -> Surface {
         let (rest, count) = self.rest(side, siblings);
         let surface = Surface::new(side.shape, &side.facets, &side.orientations).bounded_by(&rest, count);
-        surface.with_mirrors(self.reference, &bounds(self.parts, self.reference), self.is_fixed())
+        let surface =
+            surface.with_mirrors(self.reference, &bounds(self.parts, self.reference), self.is_fixed());
+        surface.with_closed(self.closed)
     }
 
     /// A side in space with its siblings and the rest of its body's boundary.
     fn boundary(&self, side: &Side, siblings: &[Side]) -> Boundary {
         let (rest, count) = self.rest(side, siblings);
         let boundary = Boundary::new(side.shape, &side.facets, &rest, count);
-        boundary.with_mirrors(self.reference, &bounds(self.parts, self.reference), self.is_fixed())
+        let boundary =
+            boundary.with_mirrors(self.reference, &bounds(self.parts, self.reference), self.is_fixed());
+        boundary.with_closed(self.closed)
     }
 
     /// The rest of the boundary of a side's body, the facets of its siblings first, and their

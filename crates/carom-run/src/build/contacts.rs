@@ -1,7 +1,7 @@
 //! The contacts of a model: kinematics from the named sides, interface from law and enforcement. A
 //! new contact method is one line here.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use carom_case::{
     ActiveSetRule, Case, ContactLaw, ContactSpec, Detection, Enforcement, ForceTime, FrictionSpec, Method,
@@ -18,7 +18,7 @@ use super::between_sides::{Bodies, Which, longest, without};
 use super::branching::branching;
 use super::given::in_space_and_time;
 use super::obstacles::{self, Moving};
-use super::side::{Side, side};
+use super::side::Side;
 
 /// The contacts of a case.
 pub(super) fn contacts(
@@ -26,10 +26,11 @@ pub(super) fn contacts(
     parts: &[BodyInstance],
     obstacles: &[Moving],
     [massless, fixed, moved]: [&[bool]; 3],
+    closed: &HashSet<Vec<usize>>,
     problems: &mut Vec<Problem>,
 ) -> Vec<Contact> {
     let reference: Vec<f64> = parts.iter().flat_map(|part| part.body.mesh().nodes.flat()).copied().collect();
-    let bodies = Bodies { case, parts, reference: &reference, fixed, moved };
+    let bodies = Bodies { case, parts, reference: &reference, fixed, moved, closed };
     let made = (0..case.contacts.len()).map(|k| contact(k, &bodies, obstacles, massless));
     let contacts: Vec<_> =
         made.filter_map(|made| made.map_err(|problem| problems.push(problem)).ok()).collect();
@@ -42,8 +43,8 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
     let spec = &case.contacts[k];
     let averages = case.time.scheme.is_alpha();
     let conserves = case.time.scheme.conserves();
-    let secondary = side(parts, &spec.secondary, &spec.path("secondary"))?;
-    let opposite = opposite(spec, parts)?;
+    let secondary = bodies.side(&spec.secondary, &spec.path("secondary"))?;
+    let opposite = opposite(spec, bodies)?;
     let primary = if let Opposite::Side(side) = &opposite { Some(side) } else { None };
     let obstacle = obstacles.iter().find(|obstacle| obstacle.contact == k);
     let primary_part = primary.map(|primary| primary.part);
@@ -204,10 +205,10 @@ enum Opposite {
     Obstacle(Obstacle),
 }
 
-fn opposite(spec: &ContactSpec, parts: &[BodyInstance]) -> Result<Opposite, Problem> {
+fn opposite(spec: &ContactSpec, bodies: &Bodies) -> Result<Opposite, Problem> {
     Ok(match obstacles::shape(&spec.primary, spec.entry)? {
         Some(shape) => Opposite::Obstacle(shape),
-        None => Opposite::Side(side(parts, spec.primary.side().unwrap_or(""), &spec.path("primary"))?),
+        None => Opposite::Side(bodies.side(spec.primary.side().unwrap_or(""), &spec.path("primary"))?),
     })
 }
 

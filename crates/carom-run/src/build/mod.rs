@@ -91,7 +91,8 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
     problems.extend(weights.add_varying(&mut loads));
     let mut moved = vec![false; dofs];
     motions.dofs().for_each(|dof| moved[dof] = true);
-    let contacts = contacts::contacts(case, &parts, &obstacles, [&massless, &fixed, &moved], &mut problems);
+    let dofs_that = [&massless[..], &fixed[..], &moved[..]];
+    let contacts = contacts::contacts(case, &parts, &obstacles, dofs_that, &ties.closed, &mut problems);
     let probes = probes(case, &parts, &mut problems);
     let unconstrained = free_motions(&parts, &fixed, &ties.points);
     // A contact that could not be made might hold them.

@@ -17,6 +17,29 @@ pub(crate) struct Side {
 }
 
 impl Side {
+    /// The side without these facets, given by their nodes in ascending order.
+    pub(crate) fn without(mut self, closed: &HashSet<Vec<usize>>) -> Self {
+        let is_open: Vec<bool> = self
+            .facets
+            .iter()
+            .map(|facet| {
+                let mut nodes = facet.clone();
+                nodes.sort_unstable();
+                !closed.contains(&nodes)
+            })
+            .collect();
+        if is_open.iter().all(|is_open| *is_open) {
+            return self;
+        }
+        let mut of_facet = is_open.iter();
+        self.facets.retain(|_| of_facet.next() == Some(&true));
+        let mut of_facet = is_open.iter();
+        self.orientations.retain(|_| of_facet.next() == Some(&true));
+        let left: HashSet<usize> = self.facets.iter().flatten().copied().collect();
+        self.nodes.retain(|node| left.contains(node));
+        self
+    }
+
     /// The other facets of its body's boundary.
     pub(crate) fn rest(&self, parts: &[BodyInstance]) -> Vec<Vec<usize>> {
         if self.shape == FacetShape::Point {

@@ -47,6 +47,21 @@ impl TieSide {
         Some((facet, self.shape.closest(&self.places[facet], place)))
     }
 
+    /// The facets all of whose nodes lie on another side, to within what `reach` says of its
+    /// facets.
+    pub(super) fn on(
+        &self,
+        mesh: &Mesh,
+        other: &Self,
+        reach: impl Fn(&Self, usize) -> f64,
+    ) -> Vec<Vec<usize>> {
+        let lies_on = |node: &usize| {
+            let nearest = other.nearest(place_of(mesh, *node));
+            nearest.is_some_and(|(facet, point)| point.distance <= reach(other, facet))
+        };
+        self.facets.iter().filter(|facet| facet.iter().all(lies_on)).cloned().collect()
+    }
+
     /// Largest extent of a facet, of a cell if facets are points.
     pub(super) fn length(&self, facet: usize) -> f64 {
         if self.shortest.is_finite() {

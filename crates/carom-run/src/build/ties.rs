@@ -5,6 +5,8 @@
 //! A node beside the surface, by less than what the tie adjusts, is moved onto it in the mesh,
 //! without stress: the force of a tie at a distance from its point would have a moment.
 
+use std::collections::HashSet;
+
 use carom_case::{Case, Overhang, Problem, TieMethod, TieSpec};
 use carom_mechanics::model::{Circular, Points, Tie};
 use carom_solid::{FacetPoint, Mesh};
@@ -29,6 +31,9 @@ const ROUND_OFF: f64 = 1e-9;
 pub(crate) struct Ties {
     pub(crate) points: Points,
     pub(crate) list: Vec<Tie>,
+    /// Facets that lie on the other side of their tie, by their nodes in ascending order. They are
+    /// inside what the tie joins, and nothing meets them.
+    pub(crate) closed: HashSet<Vec<usize>>,
 }
 
 /// A tied node, and the nodes of the primary side's body that carry it, in the numbers of their
@@ -43,6 +48,8 @@ struct Found {
     bodies: [usize; 2],
     tied: Vec<Tied>,
     sides: [Vec<usize>; 2],
+    /// Facets of both sides that lie on the other one.
+    closed: [Vec<Vec<usize>>; 2],
 }
 
 /// Finds the points of all ties, and moves the nodes of the meshes onto them.
@@ -51,10 +58,14 @@ pub(crate) fn ties(case: &Case, meshes: &mut [Mesh], problems: &mut Vec<Problem>
         meshes.iter().scan(0, |next, mesh| Some(std::mem::replace(next, *next + mesh.nodes.len()))).collect();
     let mut links = Links::default();
     let mut list = Vec::new();
+    let mut closed = HashSet::new();
     for (k, spec) in case.ties.iter().enumerate() {
         match found(case, k, spec, meshes) {
-            Ok(Found { bodies, tied, sides }) => {
+            Ok(Found { bodies, tied, sides, closed: facets }) => {
                 let [secondary, primary] = bodies.map(|body| first[body]);
+                for (facets, first) in facets.into_iter().zip([secondary, primary]) {
+                    closed.extend(facets.into_iter().map(|facet| in_order(facet, first)));
+                }
                 for Tied { node, weights } in tied {
                     let weights = weights.into_iter().map(|(node, weight)| (primary + node, weight));
                     links.tie(k, secondary + node, weights.collect());
@@ -91,7 +102,14 @@ pub(crate) fn ties(case: &Case, meshes: &mut [Mesh], problems: &mut Vec<Problem>
         let place = &places[point.node * d..(point.node + 1) * d];
         meshes[body].nodes[point.node - first[body]].copy_from_slice(place);
     }
-    Ties { points, list }
+    Ties { points, list, closed }
+}
+
+/// The nodes of a facet in ascending order, in the numbers of the model.
+fn in_order(mut facet: Vec<usize>, first: usize) -> Vec<usize> {
+    facet.iter_mut().for_each(|node| *node += first);
+    facet.sort_unstable();
+    facet
 }
 
 /// The tie that makes a node a point.
@@ -122,6 +140,7 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
     let target = TieSide::new(&meshes[primary], other);
     let target = target.ok_or_else(|| missing("primary", &tie.primary, &meshes[primary]))?;
     let carriers = meshes[primary].side_nodes(other).unwrap_or_default();
+    let reach = |target: &TieSide, facet: usize| tie.adjust.unwrap_or(OFFSET * target.length(facet));
     let mut tied = Vec::new();
     for &node in &nodes {
         if secondary == primary && carriers.contains(&node) {
@@ -130,8 +149,7 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
         }
         let place = place_of(&meshes[secondary], node);
         let Some((facet, point)) = target.nearest(place) else { continue };
-        let reach = tie.adjust.unwrap_or(OFFSET * target.length(facet));
-        if point.distance > reach {
+        if point.distance > reach(&target, facet) {
             if point.beside > BESIDE * point.distance {
                 if tie.overhang == Overhang::Free {
                     continue;
@@ -156,7 +174,13 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
         let help = "name the two sides that touch, or `place` one of the bodies there";
         return Err(Problem::new(format!("tie[{k}].secondary"), what, why, help));
     }
-    Ok(Found { bodies: [secondary, primary], tied, sides: [nodes, carriers] })
+    let source = TieSide::new(&meshes[secondary], own);
+    let closed = match &source {
+        Some(source) => [(secondary, source, &target), (primary, &target, source)]
+            .map(|(body, side, opposite)| side.on(&meshes[body], opposite, reach)),
+        None => Default::default(),
+    };
+    Ok(Found { bodies: [secondary, primary], tied, sides: [nodes, carriers], closed })
 }
 
 /// Nodes with their weights of sum 1, without those that are round-off.

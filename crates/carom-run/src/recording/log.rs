@@ -130,6 +130,10 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             );
             Event::new(step, *time, "ambiguous", message).with("regularity", *regularity)
         }
+        LogEvent::Unstable { time } => {
+            let message = "the equilibrium is unstable: the tangent stiffness is not positive definite";
+            Event::new(step, *time, "unstable", message.to_owned())
+        }
         LogEvent::Dependent { time, gaps } => {
             let places =
                 gaps.iter().map(|(contact, node)| format!("node {node} of \"{}\"", contact_name(*contact)));

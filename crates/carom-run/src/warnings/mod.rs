@@ -53,7 +53,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 33] = [
+pub const WARNINGS: [Entry; 34] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -214,7 +214,7 @@ pub const WARNINGS: [Entry; 33] = [
     Entry {
         id: "undeclared-contact",
         why: "nothing keeps them apart: contact acts only between the sides that a [[contact]] names",
-        advice: "a [[contact]] that names the sides that meet, or one with between = \"all\"; or ending the run before they meet",
+        advice: "a [[contact]] that names the sides that meet, or one with between = \"all\" (which leaves out bodies that a tie joins); or ending the run before they meet",
         rule: Rule::Both(courses::undeclared_contact, record::undeclared_contact),
     },
     Entry {
@@ -247,6 +247,14 @@ pub const WARNINGS: [Entry; 33] = [
         why: "μ is so large that the same forces allow stick, slip or lift-off; which of them is found depends on the path of the iteration",
         advice: "a smaller mu, a shorter step (inertia makes it unique), or mu as a formula that grows to its value",
         rule: Rule::Record(record::ambiguous_friction),
+    },
+    Entry {
+        id: "unstable-equilibrium",
+        why: "the tangent stiffness is not positive definite: the least disturbance makes the body leave this equilibrium (it buckles, snaps \
+              through or necks), and a real one is not found in it",
+        advice: "a small load or imperfection that leads to the buckled state, load steps with supports that move instead of loads, or \
+                 backward-euler, which follows the motion to the next stable state",
+        rule: Rule::Record(record::unstable_equilibrium),
     },
     Entry {
         id: "fallback-steps",

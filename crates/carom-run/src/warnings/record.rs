@@ -231,6 +231,13 @@ pub(super) fn ambiguous_friction(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     })
 }
 
+pub(super) fn unstable_equilibrium(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    first_of(run, "unstable", |time, count| {
+        let steps = if count == 1 { "load step" } else { "load steps" };
+        format!("the equilibrium of {count} {steps} is unstable, the first at t = {time}")
+    })
+}
+
 /// Most nodes that a warning names.
 const NODES: usize = 3;
 

@@ -277,3 +277,44 @@ fn contacts_of_several_bodies() {
         assert_eq!(both(name), [None, None], "{name}");
     }
 }
+
+/// Two discs that never meet fall on one floor: the restitution of the faster one, and its apex,
+/// are those of its own contact, as if it fell alone, while the other one is still in contact.
+#[test]
+fn the_restitution_of_a_body_is_that_of_its_own_contact() {
+    let disc = |name: &str, radius: f64, x: f64, y: f64| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nmaterial = \"m\"\nelement = \"T6\"\ngravity = [0.0, -10.0]\n\
+             mesh = {{ shape = \"disc\", radius = {radius}, center = [{x}, {y}], size = 0.3 }}\n\
+             [[contact]]\nname = \"f{name}\"\nsecondary = \"{name}.arc\"\n\
+             primary = {{ plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}\n"
+        )
+    };
+    let start = "dimension = 2\nmaterial = [{ name = \"m\", law = \"neo-hookean\", density = 1.0, young = 400.0, poisson = 0.3 }]\n";
+    let end = "[time]\nend = 1.0\nstep = 2e-3\nscheme = { kind = \"energy-momentum\" }\n[output]\nfields_every = 0\n";
+    let first = disc("a", 0.5, 0.0, 1.0);
+    let alone = record(&[start, &first, end].concat(), &[]);
+    let both = record(&[start, &first, &disc("b", 0.7, 3.0, 1.45), end].concat(), &[]);
+    let restitutions = [&alone, &both].map(|run| restitution(run).unwrap());
+    assert!((restitutions[0] - restitutions[1]).abs() < 1e-9, "{restitutions:?}");
+    let apex = |run: &Run| of_run(run).into_iter().find(|metric| metric.name == "apex").unwrap().value;
+    assert!((apex(&alone).unwrap() - apex(&both).unwrap()).abs() < 1e-9);
+}
+
+/// A wall that turns back while a bar is on it leaves the bar: that is not the bar's rebound.
+#[test]
+fn no_restitution_where_an_obstacle_changes_its_velocity() {
+    let wall = |motion: &str| {
+        format!(
+            "contact.hit.primary={{ plane = {{ point = [-1.01], normal = [1.0] }}, motion = {{ x = \"{motion}\" }} }}"
+        )
+    };
+    let sets = ["body.short.velocity=[0.0]", "contact.hit.secondary=short.left", "time.end=4.5"];
+    let away = "body.long.mesh={ shape = \"interval\", min = 5.0, max = 7.0, cells = 10 }";
+    let steady = record(BARS, &[&wall("0.02*t"), away, sets[0], sets[1], sets[2]]);
+    assert!((restitution(&steady).unwrap() - 1.0).abs() < 0.03);
+    let turning = wall("if(t < 2.3, 0.02*t, 0.046 - 0.1*(t - 2.3))");
+    let run = record(BARS, &[&turning, away, sets[0], sets[1], sets[2]]);
+    assert_eq!(restitution(&run), None);
+    assert!(no_rebound(&run).unwrap().contains("obstacle"), "{:?}", no_rebound(&run));
+}

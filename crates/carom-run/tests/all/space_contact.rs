@@ -424,3 +424,52 @@ scheme = { kind = "paoli-schatzman" }
     }
     assert!(deepest < 1.1e-7, "{deepest:e}");
 }
+
+/// A block that lands on a narrower pedestal and spreads: its nodes slide off the pedestal's edges,
+/// whose nodes hold it from then on, though they are inside its facets by then.
+const PEDESTAL: &str = r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.3 }]
+body = [
+    { name = "block", material = "m", element = "Hex8", mesh = { shape = "box", min = [-0.25, -0.25, 0.005], max = [0.25, 0.25, 0.255], cells = [4, 4, 2] }, velocity = [0, 0, -0.5] },
+    { name = "pedestal", material = "m", element = "Hex8", mesh = { shape = "box", min = [-0.125, -0.125, -0.25], max = [0.125, 0.125, 0], cells = [2, 2, 2] } },
+]
+support = [{ on = ["pedestal.bottom"], fix = ["x", "y", "z"] }]
+contact = [{ name = "c", secondary = "block.skin", primary = "pedestal.skin" }]
+time = { scheme = { kind = "energy-momentum" }, step = 1e-3, end = 0.05 }
+newton = { tolerance = 1e-11 }
+"#;
+
+#[test]
+fn nodes_that_are_inside_when_their_pair_begins_are_not_pushed_out() {
+    let mut sim = simulation(PEDESTAL, &[""; 0]);
+    let mut report = GridReport::default();
+    while !sim.finished() {
+        sim.advance(&mut report).unwrap();
+    }
+    assert!(report.releases >= 8, "{} nodes slid off", report.releases);
+    let ledger = &sim.state().ledger;
+    let share = ledger.created() / ledger.scale();
+    assert!(share < 1e-9, "{share:e} of the energy is created");
+}
+
+/// Two cubes whose sharp edges cross at their middle nodes: the pair of the edges goes on along one
+/// that turns there. What its depth did would stop the run.
+#[test]
+fn edges_that_turn_where_a_pair_goes_on_create_no_energy() {
+    let cubes = r#"
+dimension = 3
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.3 }]
+body = [
+    { name = "cube", material = "m", element = "Tet10", mass = "lumped", mesh = { shape = "box", min = [-0.2, -0.2, -0.2], max = [0.2, 0.2, 0.2], cells = [2, 2, 2] }, place = { rotate = { axis = [1.0, 0.0, 0.0], angle = 45.0 }, shift = [0.0, 0.0, 0.287842712474619] }, velocity = [0, 0, -0.5] },
+    { name = "base", material = "m", element = "Tet10", mass = "lumped", mesh = { shape = "box", min = [-0.2, -0.2, -0.2], max = [0.2, 0.2, 0.2], cells = [2, 2, 2] }, place = { rotate = { axis = [0.0, 1.0, 0.0], angle = 45.0 }, shift = [0.0, 0.0, -0.282842712474619] } },
+]
+support = [{ on = ["base.bottom"], fix = ["x", "y", "z"] }]
+contact = [{ name = "c", secondary = "base.skin", primary = "cube.skin" }]
+time = { scheme = { kind = "central-difference" }, step = 0.00055, end = 0.06985 }
+"#;
+    let sim = finish(simulation(cubes, &[""; 0]));
+    let ledger = &sim.state().ledger;
+    let share = ledger.created() / ledger.scale();
+    assert!(share < 0.02, "{share:e} of the energy is created");
+}

@@ -1,6 +1,6 @@
 //! Load steps without inertia: exact equilibria, stable and unstable, and unconstrained bodies.
 
-use carom_run::GridReport;
+use carom_run::{GridReport, LogEvent};
 
 use super::common::{case as case_of, finish, simulation};
 use super::loads::{HELD, bar, body, time};
@@ -274,4 +274,55 @@ time = { scheme = { kind = "static" }, step = 1.0, end = 1.0 }
     let stopped = simulation(FLOATS, &[""; 0]).advance(&mut GridReport::default()).unwrap_err().to_string();
     assert!(stopped.contains("bodies \"block\", \"plate\" are together free to move along y"), "{stopped}");
     assert!(stopped.contains("Add a support to one of them"), "{stopped}");
+}
+
+/// A column, clamped at its foot, under a load that grows to three times Euler's, π²EI/(4 L²): from
+/// a third of it on, straight equilibria are unstable. With its head held too, eight times Euler's
+/// load is needed.
+#[test]
+fn a_straight_column_above_eulers_load_is_said_to_be_unstable() {
+    let column = r#"
+dimension = 2
+plane = "stress"
+thickness = 0.5
+material = [{ name = "m", law = "saint-venant-kirchhoff", density = 1.0, young = 1000.0, poisson = 0.3 }]
+body = [{ name = "b", material = "m", element = "Q9", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 20.0], cells = [2, 20] } }]
+support = [{ on = ["b.bottom"], fix = ["x", "y"] }]
+load = [{ on = ["b.top"], traction = ["0", "-1.5421256876702123*t"] }]
+time = { scheme = { kind = "static" }, step = 0.05, end = 1.0 }
+"#;
+    let first_unstable = |sets: &[&str]| {
+        let mut sim = simulation(column, sets);
+        let mut report = GridReport::default();
+        while !sim.finished() {
+            sim.advance(&mut report).unwrap();
+        }
+        report.events.iter().find_map(|event| match event {
+            LogEvent::Unstable { time } => Some(*time),
+            _ => None,
+        })
+    };
+    assert!(first_unstable(&[]).is_some_and(|time| (time - 0.35).abs() < 1e-9));
+    let held = r#"support=[{ on = ["b.bottom"], fix = ["x", "y"] }, { on = ["b.top"], fix = ["x"] }]"#;
+    assert_eq!(first_unstable(&[held]), None);
+}
+
+/// A block that only contact holds up is stable: a motion that opens no gap needs energy.
+#[test]
+fn a_block_that_rests_on_an_obstacle_is_stable() {
+    let block = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+body = [{ name = "b", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [4, 4] }, gravity = ["0", "-9.81*t"] }]
+support = [{ on = ["b.left"], fix = ["x"] }]
+contact = [{ name = "floor", secondary = "b.bottom", primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } } }]
+time = { scheme = { kind = "static" }, step = 0.25, end = 1.0 }
+"#;
+    let mut sim = simulation(block, &[""; 0]);
+    let mut report = GridReport::default();
+    while !sim.finished() {
+        sim.advance(&mut report).unwrap();
+    }
+    assert!((sim.state().contact_forces[0][1].abs() - 9.81).abs() < 1e-9);
+    assert!(!report.events.iter().any(|event| matches!(event, LogEvent::Unstable { .. })));
 }

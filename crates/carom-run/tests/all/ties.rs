@@ -665,3 +665,37 @@ fn refined_meshes_are_tied() {
         assert_eq!(count, if factor == "1.0" { 7 } else { 13 });
     }
 }
+
+/// A block slides without friction over the flush joint of two tied ones, along whole boundaries:
+/// the tied faces are no walls to it, and it goes on as over one block.
+#[test]
+fn a_tied_joint_is_no_wall() {
+    let slide = |bed: &str, on: &str| {
+        let text = format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }}]
+body = [
+    {{ name = "slider", material = "m", element = "T6", mesh = {{ shape = "rectangle", min = [-0.7, 0], max = [-0.1, 0.4], cells = [3, 2] }}, velocity = [1, 0], gravity = [0, -3] }},
+    {bed}
+]
+support = [{{ on = [{on}], fix = ["x", "y"] }}]
+contact = [{{ name = "k", between = "all" }}]
+time = {{ scheme = {{ kind = "chung-hulbert", rho_inf = 0.8 }}, step = 5e-3, end = 0.6 }}
+"#
+        );
+        let sim = finish(simulation(&text, &[""; 0]));
+        let nodes = sim.model().parts[0].nodes();
+        let count = nodes.len() as f64;
+        nodes.map(|node| sim.state().v[2 * node]).sum::<f64>() / count
+    };
+    let whole = r#"{ name = "A", material = "m", element = "T6", mesh = { shape = "rectangle", min = [-1, -0.5], max = [1, 0], cells = [10, 3] } }"#;
+    let halves = r#"{ name = "A", material = "m", element = "T6", mesh = { shape = "rectangle", min = [-1, -0.5], max = [0, 0], cells = [5, 3] } },
+    { name = "B", material = "m", element = "T6", mesh = { shape = "rectangle", min = [0, -0.5], max = [1, 0], cells = [5, 3] } },
+]
+tie = [{ name = "t", secondary = "A.right", primary = "B.left" }"#;
+    let over_one = slide(whole, "\"A.bottom\"");
+    let over_joint = slide(halves, "\"A.bottom\", \"B.bottom\"");
+    assert!((over_one - 1.0).abs() < 0.01, "{over_one}");
+    assert!((over_joint - over_one).abs() < 1e-3, "{over_joint} {over_one}");
+}

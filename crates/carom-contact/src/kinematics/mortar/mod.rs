@@ -129,6 +129,10 @@ impl Kinematics for Mortar {
         false
     }
 
+    fn keeps_depth(&self, _: &Pair) -> bool {
+        false
+    }
+
     fn facets(&self, _: usize) -> usize {
         match &self.opposite {
             Opposite::Side(primary) => primary.surface.facets(),

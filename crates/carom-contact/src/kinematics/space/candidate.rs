@@ -15,7 +15,7 @@ use crate::pair::Pair;
 
 /// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
 /// which a node has not crossed it.
-const BEHIND: f64 = 0.02;
+const BEHIND: f64 = 0.1;
 /// Difference in θ below which facets are reached together: where they meet, and a path lies in the
 /// neighbouring side.
 const TOGETHER: f64 = 1e-4;
@@ -97,7 +97,18 @@ impl NodeToPatch {
     ) -> Option<OnFacet<[f64; 2]>> {
         let node = self.secondary[place_of];
         let found = self.reached(swept, near, paths, place_of, before, now);
-        found.filter(|at| !self.is_left_to_edge(node, *at, before))
+        // One that is inside, and that the edge does not keep out at the end of the step any more,
+        // is found in time.
+        let is_inside = |OnFacet { facet, .. }| {
+            let patch = self.primary.patch(facet);
+            let start = place(before, node);
+            let xi = patch.closest_point(before, start, REACH);
+            xi.is_some_and(|xi| self.gap(facet, xi, start, before) < -NOISE * patch.length(before))
+        };
+        let is_left = |at: OnFacet<[f64; 2]>| {
+            self.is_left_to_edge(node, at, before) && (!is_inside(at) || self.is_left_to_edge(node, at, now))
+        };
+        found.filter(|at| !is_left(*at))
     }
 
     /// Whether a node is kept out of a facet by the nodes of a sharp edge of it, which the other

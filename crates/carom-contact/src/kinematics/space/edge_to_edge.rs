@@ -21,7 +21,7 @@ use crate::friction::{FrictionState, Tangential};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::drift::Drift;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, Passed, SweptEdges};
+use crate::kinematics::{Kinematics, ON_FACET, Passed, SweptEdges};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -265,7 +265,8 @@ impl EdgeToEdge {
             if let Some((to, gap)) = gap.and_then(|gap| self.next(edges, gap.xi, y))
                 && known.insert(to)
             {
-                *pair = Pair { node: to[0], facet: self.sides[1].facets() + to[1], ..*pair };
+                let facet = self.sides[1].facets() + to[1];
+                *pair = Pair { node: to[0], facet, begins: true, ..*pair };
                 [pair.xi, pair.eta] = gap.xi;
                 let from = self.sides[1].facets() + edges[1];
                 if pair.active && from != pair.facet {
@@ -377,8 +378,8 @@ impl Kinematics for EdgeToEdge {
         self.sides[1].nodes(self.of(pair)[1])
     }
 
-    fn is_on_facet(&self, _: &Pair) -> bool {
-        false
+    fn is_on_facet(&self, pair: &Pair) -> bool {
+        [pair.xi, pair.eta].into_iter().all(|xi| xi.abs() <= 1.0 + ON_FACET)
     }
 
     fn facets(&self, _: usize) -> usize {
@@ -438,7 +439,7 @@ impl Kinematics for EdgeToEdge {
             rows.push_open();
             return Ok(());
         }
-        self.push(edges, gap.distance, gap.gradient(), rows);
+        self.push(edges, gap.distance + pair.depth, gap.gradient(), rows);
         Ok(())
     }
 

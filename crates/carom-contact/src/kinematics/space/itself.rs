@@ -10,13 +10,13 @@ use super::edge_to_edge::EdgeToEdge;
 use super::folds::PatchFolds;
 use super::node_to_patch::{NodeToPatch, PAST};
 use super::paths::Paths;
-use crate::kinematics::{Combined, NodesWithDepth, Side};
+use crate::kinematics::{AtJoints, Combined, NodesWithDepth, Side};
 
 impl NodeToPatch {
     /// A side against itself: its nodes in the role of the later place, and those in the role of
     /// the earlier one, whose depth is zero at sharp edges; `piece`: the connected piece of its
     /// body to which each node belongs, from `first_node` on; `reference`: the reference positions,
-    /// flat over all nodes; `single`: whether a node over a joint has a pair with one facet.
+    /// flat over all nodes; `at_joints`: what nodes over joints have.
     pub fn of_itself(
         side: &Boundary,
         nodes: Vec<usize>,
@@ -24,11 +24,11 @@ impl NodeToPatch {
         piece: &[usize],
         first_node: usize,
         reference: &[f64],
-        single: bool,
+        at_joints: AtJoints,
     ) -> Combined {
         let folds = Arc::new(PatchFolds::new(side, piece, first_node, reference));
         let of = |nodes: Vec<usize>, which: Side| {
-            let nodes = NodeToPatch::new(nodes, side.clone()).with_single_facets(single);
+            let nodes = NodeToPatch::new(nodes, side.clone()).with_joints(at_joints);
             nodes.of_body(side.clone()).folding(folds.clone(), which)
         };
         let others = [BTreeSet::new(), BTreeSet::new()];

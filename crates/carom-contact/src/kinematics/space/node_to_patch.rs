@@ -26,12 +26,12 @@ use super::patch::{Feature, PatchPoint, place};
 use super::paths::{Around, NOISE, Paths};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Measured, Next, Sliding};
-use crate::kinematics::joint::OnFacets;
+use crate::kinematics::joint::{AtJoints, OnFacets};
 use crate::kinematics::opposed::is_left;
 use crate::kinematics::recent::Recent;
 use crate::kinematics::reversed::{Corners, Faced};
 use crate::kinematics::rounding::rounding;
-use crate::kinematics::{Facets, Kinematics, OnFacet, Passed, Side, SweptPatch};
+use crate::kinematics::{Facets, Kinematics, ON_FACET, OnFacet, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
 
@@ -72,7 +72,7 @@ pub struct NodeToPatch {
     pub(super) folds: Option<(Arc<PatchFolds>, Side)>,
     /// The boundary of the body to which the secondary nodes belong.
     pub(super) own: Option<Boundary>,
-    pub(super) single: bool,
+    pub(super) at_joints: AtJoints,
     /// For nodes of the primary side against the secondary one: their corners.
     reversed: Option<Corners>,
     tools: Mutex<Tools>,
@@ -103,7 +103,7 @@ impl NodeToPatch {
             kept: Vec::new(),
             folds: None,
             own: None,
-            single: false,
+            at_joints: AtJoints::default(),
             reversed: None,
             tools,
         }
@@ -116,10 +116,10 @@ impl NodeToPatch {
         Self { allowed, ..self }
     }
 
-    /// Contact in which a node over a joint has a pair with one facet, if it is `single`.
+    /// Contact with another rule for nodes over joints.
     #[must_use]
-    pub fn with_single_facets(self, single: bool) -> Self {
-        Self { single, ..self }
+    pub fn with_joints(self, at_joints: AtJoints) -> Self {
+        Self { at_joints, ..self }
     }
 
     /// Contact of nodes that belong to a body with the boundary `own`.
@@ -285,6 +285,7 @@ impl NodeToPatch {
                 best = Some((facet, found.distance, found.xi));
             }
         }
+        let adds_up = |facet: usize| !self.at_joints.several && self.primary.is_smooth(pair.facet, facet, y);
         match best {
             Some((facet, ..))
                 if !self.primary.is_of_side(facet)
@@ -295,7 +296,7 @@ impl NodeToPatch {
             Some((facet, _, xi_there)) if came_from == Some(facet) => {
                 let gaps = [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
                 let is_flat = (gaps[0] - gaps[1]).abs() <= FLAT * patch.length(y);
-                if is_flat && patch.furthest(xi) <= HAND_OVER {
+                if is_flat && patch.furthest(xi) <= HAND_OVER || adds_up(facet) {
                     Next::Stay
                 } else {
                     Next::Concave(facet, xi_there)
@@ -303,7 +304,9 @@ impl NodeToPatch {
             }
             Some((facet, _, xi)) => Next::HandOver(facet, xi),
             None => {
-                if let Some(OnFacet { facet, xi }) = self.in_crease(pair, y) {
+                if let Some(OnFacet { facet, xi }) = self.in_crease(pair, y)
+                    && !adds_up(facet)
+                {
                     return Next::Concave(facet, xi);
                 }
                 let bridged = patch.furthest(xi) <= REACH && !self.faces_nothing(pair.facet, xi, y);
@@ -320,7 +323,8 @@ impl NodeToPatch {
         };
         let next = |pair: &Pair, came_from| {
             let at = OnFacet { facet: pair.facet, xi: [pair.xi, pair.eta] };
-            if !pair.active && self.is_left_to_edge(self.secondary[pair.node], at, before) {
+            let is_left = |y| self.is_left_to_edge(self.secondary[pair.node], at, y);
+            if !pair.active && is_left(before) && is_left(now) {
                 return Next::Leave;
             }
             self.next_facet(pair, came_from, now)
@@ -415,7 +419,7 @@ impl Kinematics for NodeToPatch {
     }
 
     fn is_on_facet(&self, pair: &Pair) -> bool {
-        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]) <= 0.0
+        self.primary.patch(pair.facet).furthest([pair.xi, pair.eta]) <= ON_FACET
     }
 
     fn facets(&self, _: usize) -> usize {

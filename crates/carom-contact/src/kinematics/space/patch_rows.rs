@@ -59,7 +59,7 @@ impl OnFacets for NodeToPatch {
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);
-        if self.single || !(-AROUND_JOINT..=REACH).contains(&furthest) {
+        if !self.at_joints.mean || !(-AROUND_JOINT..=REACH).contains(&furthest) {
             return None;
         }
         // A node may not meet every facet of a joint of its own side.
@@ -98,7 +98,7 @@ impl OnFacets for NodeToPatch {
         let gap = PatchGap::new(patch, y, place(y, node), xi);
         ContactError::unless_regular(node, pair, gap.regularity())?;
         let slopes = gap.gradient(patch.nodes.len());
-        rows.push_both(gap.distance + self.slack(pair.node), [&[node], patch.nodes], slopes);
+        rows.push_both(gap.distance + self.slack(pair.node) + pair.depth, [&[node], patch.nodes], slopes);
         Ok(())
     }
 

@@ -78,9 +78,10 @@ def energy(run: Run, *, ax: Axes | None = None, size: Size = "single") -> Axes:
     Axes
         The Axes.
     """
-    # The columns of the ledger follow one another.
+    # The columns of the ledger follow one another, but that of plastic flow.
     names = list(run.history)
     terms = names[names.index("kinetic") : names.index("dissipation") + 1]
+    terms += [name for name in ("plastic_work",) if name in names]
     with style():
         ax = axes(ax, size)
         time = run.history["time"]
