@@ -3,7 +3,14 @@ const scene = async (root, data) => {
   const [canvas, over] = root.querySelectorAll("canvas"), frames = data.frames, N = data.nodes, D = data.dimension;
   const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
   // Without WebGL 2 the figures remain.
-  if (!gl || typeof DecompressionStream === "undefined") return;
+  const leave = () => {
+    const note = document.createElement("p");
+    note.className = "small";
+    note.textContent = "The animation needs WebGL 2, which this browser does not offer here. The figures below show the same run.";
+    root.hidden = true;
+    root.before(note);
+  };
+  if (!gl || typeof DecompressionStream === "undefined") return leave();
   const find = name => root.querySelector(name), isSolid = D === 3;
 
   // The mesh, reference positions, and the numbers of each frame.
@@ -238,7 +245,8 @@ const scene = async (root, data) => {
     H = isFull ? Math.max(200, canvas.parentElement.clientHeight) : isSolid ? Math.min(tall, 0.75 * W) : Math.max(bar, Math.min(tall, aspect * (W - 2 * PAD) + 2 * PAD));
     ratio = Math.min(3, window.devicePixelRatio || 1);
     for (const each of [canvas, over]) { each.width = W * ratio; each.height = H * ratio; each.style.height = H + "px"; }
-    if (shown.length) redraw();
+    // The new size has cleared both: drawn at once, they do not flicker.
+    if (shown.length) render();
   };
   const scale = () => zoom * fitted();
   const projected = (p, { image, origin } = { image: [1, 1, 1], origin: [0, 0, 0] }) => {
@@ -474,7 +482,7 @@ const scene = async (root, data) => {
   find(".home").addEventListener("click", () => { home(); if (find(".from")) find(".from").value = ""; redraw(); });
   find(".full").addEventListener("click", () => document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  canvas.addEventListener("webglcontextlost", () => { root.hidden = true; });
+  canvas.addEventListener("webglcontextlost", leave, { once: true });
   root.hidden = false;
   resize();
   new ResizeObserver(resize).observe(canvas.parentElement);

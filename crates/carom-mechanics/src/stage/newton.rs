@@ -88,7 +88,7 @@ pub(crate) fn solve_stage(
                 now = newton.next_round(now)?;
                 continue;
             }
-            newton.assess(&now)?;
+            newton.assess(&now);
             (newton.effort.events, newton.effort.frozen) = (newton.contact.events, newton.renewal.finish());
             return Ok((now, newton.effort));
         }
@@ -207,8 +207,8 @@ impl<'a> Newton<'a> {
     }
 
     /// Notes whether the equilibrium of a load step is stable. With friction, whose tangent is not
-    /// symmetric, and without a factor it is not known.
-    fn assess(&mut self, now: &Evaluation) -> Result<(), Rejected> {
+    /// symmetric, without a factor, and where the tangent has none, it is not known.
+    fn assess(&mut self, now: &Evaluation) {
         let equations = self.equations;
         let is_known = equations.stage.is_static()
             && !equations.model.has_friction()
@@ -216,10 +216,9 @@ impl<'a> Newton<'a> {
         if is_known {
             let Workspace { system, timings, .. } = &mut *self.work;
             let is_stable =
-                timed(&mut timings.factor, || system.is_stable(equations, now, &mut self.renewal))?;
-            self.effort.unstable = is_stable == Some(false);
+                timed(&mut timings.factor, || system.is_stable(equations, now, &mut self.renewal));
+            self.effort.unstable = matches!(is_stable, Ok(Some(false)));
         }
-        Ok(())
     }
 
     /// Starts from another guess.

@@ -107,7 +107,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Length,
         "vertex of the parabola through the highest row and its neighbours, − y_0",
         OWN,
-        "largest height of the striker's centre above its initial position (distance along x in one dimension), after the first episode",
+        "largest height of the striker's centre above its initial position, along the last axis (y in the plane, z in space, x in one dimension), after its first contact",
         |f| apex(f).map(|a| a.1),
     ),
     d("apex_time", Unit::Time, "time of that vertex", OWN, "time of the apex", |f| apex(f).map(|a| a.0)),
@@ -212,7 +212,7 @@ pub const HISTORY: [Definition; 28] = [
         Unit::Length,
         "max (0, −g)",
         TABLES,
-        "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges (not where a body meets itself), constrained by the contact or not (column penetration_secondary: constrained nodes)",
+        "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges (not where a body meets itself), constrained by the contact or not (column penetration_secondary: constrained nodes); smooth nodes of the primary side, which contact lets in by a fiftieth of a facet, included",
         |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
     ),
     d(

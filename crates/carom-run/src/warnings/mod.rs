@@ -250,10 +250,10 @@ pub const WARNINGS: [Entry; 34] = [
     },
     Entry {
         id: "unstable-equilibrium",
-        why: "the tangent stiffness is not positive definite: the least disturbance makes the body leave this equilibrium (it buckles, snaps \
-              through or necks), and a real one is not found in it",
-        advice: "a small load or imperfection that leads to the buckled state, load steps with supports that move instead of loads, or \
-                 backward-euler, which follows the motion to the next stable state",
+        why: "the tangent stiffness is not positive definite: the least disturbance makes the body leave this equilibrium, \
+              because it buckles, snaps through or necks; a real body would not stay in it",
+        advice: "a small load or imperfection to the side, with load steps short enough to follow where it leads; or [initial] from \
+                 this run and a dynamic scheme, with steps that resolve how the motion grows: long implicit steps damp it, and stay",
         rule: Rule::Record(record::unstable_equilibrium),
     },
     Entry {

@@ -231,10 +231,13 @@ pub(super) fn ambiguous_friction(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     })
 }
 
+/// Load steps that end in an unstable equilibrium.
 pub(super) fn unstable_equilibrium(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     first_of(run, "unstable", |time, count| {
-        let steps = if count == 1 { "load step" } else { "load steps" };
-        format!("the equilibrium of {count} {steps} is unstable, the first at t = {time}")
+        format!(
+            "load steps end in unstable equilibria, {count} of them, from t = {time} on: the load at which they become so \
+             lies in that step"
+        )
     })
 }
 
