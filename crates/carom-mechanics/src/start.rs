@@ -81,6 +81,9 @@ pub fn start(
     for pair in pairs.iter_mut().flatten() {
         pair.rests = pair.active;
         pair.begins = false;
+        if inertia != Inertia::Constrained {
+            pair.depth = 0.0;
+        }
     }
     let mut state = State {
         y,

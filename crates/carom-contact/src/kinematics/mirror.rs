@@ -25,6 +25,32 @@ pub(crate) enum Continuation {
     Tied,
 }
 
+/// The continuations of all facets of a boundary; none are listed if all are surfaces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Continuations(Vec<Continuation>);
+
+impl Continuations {
+    /// That of a facet.
+    pub(super) fn of(&self, facet: usize) -> Continuation {
+        self.0.get(facet).copied().unwrap_or_default()
+    }
+
+    /// Marks those of the facets, given by their nodes, for which `has` holds.
+    pub(super) fn mark<'a>(
+        &mut self,
+        continuation: Continuation,
+        facets: impl ExactSizeIterator<Item = &'a [usize]>,
+        has: impl Fn(&[usize]) -> bool,
+    ) {
+        self.0.resize(facets.len(), Continuation::None);
+        for (of_facet, nodes) in self.0.iter_mut().zip(facets) {
+            if has(nodes) {
+                *of_facet = continuation;
+            }
+        }
+    }
+}
+
 /// Whether a facet lies in a plane of symmetry at the positions `y`, flat over all nodes with
 /// `dimension` components each; `bodies`: a box around all bodies; `is_fixed`: whether a node is
 /// fixed along an axis.

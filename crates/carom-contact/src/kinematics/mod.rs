@@ -142,8 +142,7 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
         pair.xi.abs() <= 1.0 + ON_FACET
     }
 
-    /// Whether a pair keeps the depth at which it began. A contact point that is frozen leaves a
-    /// depth in every step, and the next one closes it.
+    /// Whether a pair keeps the depth at which it began.
     fn keeps_depth(&self, _pair: &Pair) -> bool {
         true
     }

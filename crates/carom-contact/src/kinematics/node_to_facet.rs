@@ -315,6 +315,7 @@ impl Kinematics for NodeToFacet {
         self.primary.facet(pair.facet).nodes
     }
 
+    /// A contact point that is frozen leaves a depth in every step, and the next one closes it.
     fn keeps_depth(&self, _: &Pair) -> bool {
         !self.is_frozen()
     }

@@ -290,6 +290,7 @@ impl Kinematics for NodeToObstacle {
         Some(now * before.inverse())
     }
 
+    /// An obstacle is measured as a whole: no node enters it unseen.
     fn keeps_depth(&self, _: &Pair) -> bool {
         false
     }

@@ -9,7 +9,7 @@ use carom_solid::{Bounds, FacetShape, Hull, Tree};
 use super::apart::Apart;
 use super::drift::Drift;
 use super::facets::Facets;
-use super::mirror::{Continuation, contains, is_mirror, reflected};
+use super::mirror::{Continuation, Continuations, contains, is_mirror, reflected};
 use super::projection::Facet;
 use crate::places::Places;
 
@@ -30,8 +30,8 @@ pub struct Surface {
     /// Number of facets of the side and of its siblings, the adjoining sides, which come next.
     siblings: usize,
     is_whole: bool,
-    /// What continues the surface where each facet begins; empty if nothing does anywhere.
-    continuations: Vec<Continuation>,
+    /// What continues the surface where a facet begins that is no surface.
+    continuations: Continuations,
 }
 
 /// The turn of the tangent at the joint of two facets, as the cosine and the sine of its angle;
@@ -70,7 +70,7 @@ impl Surface {
             side: facets.len(),
             siblings: facets.len(),
             is_whole,
-            continuations: Vec::new(),
+            continuations: Continuations::default(),
         }
     }
 
@@ -102,7 +102,7 @@ impl Surface {
     ) -> Self {
         let dimension = self.shape.dimension();
         let is_mirror = |facet: &[usize]| is_mirror(facet, y, dimension, bodies, &is_fixed);
-        self.mark(Continuation::Mirror, is_mirror);
+        self.continuations.mark(Continuation::Mirror, self.nodes.chunks_exact(self.shape.nodes()), is_mirror);
         self
     }
 
@@ -111,25 +111,15 @@ impl Surface {
     #[must_use]
     pub fn with_closed(mut self, closed: &HashSet<Vec<usize>>) -> Self {
         if !closed.is_empty() {
-            self.mark(Continuation::Tied, |facet| contains(closed, facet));
+            let facets = self.nodes.chunks_exact(self.shape.nodes());
+            self.continuations.mark(Continuation::Tied, facets, |facet| contains(closed, facet));
         }
         self
     }
 
-    /// Marks the facets with certain nodes.
-    fn mark(&mut self, continuation: Continuation, is_one: impl Fn(&[usize]) -> bool) {
-        let facets = self.nodes.chunks_exact(self.shape.nodes());
-        self.continuations.resize(facets.len(), Continuation::None);
-        for (of_facet, nodes) in self.continuations.iter_mut().zip(facets) {
-            if is_one(nodes) {
-                *of_facet = continuation;
-            }
-        }
-    }
-
     /// What continues the surface where a facet begins.
     pub(crate) fn continuation(&self, facet: usize) -> Continuation {
-        self.continuations.get(facet).copied().unwrap_or_default()
+        self.continuations.of(facet)
     }
 
     /// Number of facets of the side.
@@ -218,15 +208,21 @@ impl Surface {
 
     /// Tangents of a facet and of the one that follows it at their joint. Behind a plane of
     /// symmetry the mirror image of the facet follows, and behind a convex corner with a facet that
-    /// a tie has closed something like it: the other body.
+    /// a tie has closed the other body, taken for the mirror image.
     pub(crate) fn tangents_at_joint(&self, facet: usize, next: usize, y: Places) -> [Vector<2>; 2] {
         let here = self.facet(facet).at(y, 1.0).tangent;
         let there = self.facet(next).at(y, -1.0).tangent;
         let mirrored = |tangent, along: Vector<2>| reflected(tangent, along * along.norm().recip());
-        let size = here.norm() * there.norm();
-        let is_convex = here.dot(&there) < CORNER_COSINE * size && here[0] * there[1] > here[1] * there[0];
-        let is_closed = |facet: usize| self.continuation(facet) == Continuation::Tied;
-        match [facet, next].map(|facet| self.is_mirror(facet) || is_convex && is_closed(facet)) {
+        let is_convex = || {
+            let size = here.norm() * there.norm();
+            here.dot(&there) < CORNER_COSINE * size && here[0] * there[1] > here[1] * there[0]
+        };
+        let is_continued = |facet: usize| match self.continuation(facet) {
+            Continuation::None => false,
+            Continuation::Mirror => true,
+            Continuation::Tied => is_convex(),
+        };
+        match [facet, next].map(is_continued) {
             [false, false] => [here, there],
             [false, true] => [here, mirrored(here, there)],
             [true, false] => [mirrored(there, here), there],

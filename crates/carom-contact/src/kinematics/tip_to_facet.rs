@@ -297,6 +297,7 @@ impl Kinematics for TipToFacet {
         &[]
     }
 
+    /// A part of an obstacle is held from the depth on that it has at the start.
     fn keeps_depth(&self, _: &Pair) -> bool {
         false
     }

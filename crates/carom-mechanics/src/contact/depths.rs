@@ -1,11 +1,14 @@
 //! Depths that pairs keep. A node may be inside a body when its pair is found: others held it at
 //! other places until then, to within the depths that they allow, or it was left to a sharp edge. A
-//! force that pushed it out would work on the way, and create energy. The pair keeps that depth d₀
-//! instead, g + d₀ ≥ 0, less by as much as the node comes out since:
+//! force that pushed it out would work on the way, and create energy. The pair keeps that depth d
+//! instead, g + d ≥ 0, less by as much as the node comes out since:
 //!
 //! ```text
+//! d ← max(0, −g)            where the pair begins, or is handed to another facet: at the step's start
 //! d ← min(d, max(0, −g))    at the start of every step
 //! ```
+//!
+//! A pair that is handed to a facet over which its node did not lie then goes on with its depth.
 
 use carom_contact::{Pair, Pairing, Rows};
 
@@ -21,11 +24,14 @@ pub(crate) fn begin(model: &Model, before: Option<&[f64]>, pairings: &mut [Pairi
         for pair in pairing.pairs.iter_mut().filter(|pair| pair.begins) {
             pair.begins = false;
             let keeps = is_constraint && contact.kinematics.keeps_depth(pair);
-            let Some(before) = before.filter(|_| keeps) else { continue };
+            let Some(before) = before.filter(|_| keeps) else {
+                pair.depth = 0.0;
+                continue;
+            };
             let mut at = Pair { active: true, depth: 0.0, ..*pair };
             let gap = gap_at(contact, &mut at, before, &mut row);
-            if contact.kinematics.is_on_facet(&at) && gap < -model.gap_tolerance {
-                pair.depth = -gap;
+            if contact.kinematics.is_on_facet(&at) {
+                pair.depth = if gap < -model.gap_tolerance { -gap } else { 0.0 };
             }
         }
     }

@@ -37,7 +37,7 @@ const REMEMBERED: usize = 2;
 /// of contact.
 const STIFFENING: f64 = 10.0;
 /// Stiffness added along the rows where only motions that keep all gaps matter.
-const HELD: f64 = 1e4;
+const HELD: f64 = 100.0;
 /// Margin around the nodes of the rows, relative to their extent.
 const MARGIN: f64 = 0.3;
 
@@ -305,11 +305,25 @@ impl Preconditioner for Direct {
             || self.constrain(model, rows, true, STIFFENING)?)
     }
 
-    fn is_stable(&mut self, model: &Model, rows: &Constraints) -> Result<Option<bool>, LinearError> {
+    fn is_stable(
+        &mut self,
+        model: &Model,
+        point: &Point,
+        rows: &Constraints,
+    ) -> Result<Option<bool>, Rejected> {
+        self.assemble(model, &point.configuration())?;
+        let Self { matrices, latest, .. } = self;
+        let Matrices { pattern, stiffness, .. } = built(matrices, model);
+        let elimination = elimination(latest, model, pattern, &point.boundary)?;
+        let mut factor = Condensed::new(&elimination, Precision::Double).on(&model.threads);
+        factor.factor(|k| point.stiffness * stiffness[k])?;
+        let is_inner_stable = factor.is_inner_positive();
+        let last = self.tangent.replace(factor);
         self.of_mass = false;
-        self.constrain(model, rows, true, HELD)?;
-        let is_inner_stable = self.tangent.as_ref().map(Condensed::is_inner_positive);
-        Ok(is_inner_stable.map(|is_stable| is_stable && self.saddle.is_positive()))
+        let constrained = self.constrain(model, rows, true, HELD);
+        self.tangent = last;
+        constrained?;
+        Ok(Some(is_inner_stable && self.saddle.is_positive()))
     }
 
     fn regularity(&self) -> Option<f64> {

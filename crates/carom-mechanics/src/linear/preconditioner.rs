@@ -73,12 +73,17 @@ pub trait Preconditioner: Send + Sync {
     /// If the rows are linearly dependent.
     fn prepare(&mut self, model: &Model, rows: &Constraints) -> Result<bool, LinearError>;
 
-    /// Whether the tangent is positive definite on the kernel of the rows, where that is known:
-    /// then an equilibrium is stable. The tangent has been formed in double precision.
+    /// Whether the tangent at a point is positive definite for all motions that keep these rows,
+    /// where that is known: then an equilibrium is stable. The factor of the last tangent stays.
     ///
     /// # Errors
-    /// If the rows are linearly dependent.
-    fn is_stable(&mut self, _model: &Model, _rows: &Constraints) -> Result<Option<bool>, LinearError> {
+    /// If a cell is inverted there, or the tangent has no factor.
+    fn is_stable(
+        &mut self,
+        _model: &Model,
+        _point: &Point,
+        _rows: &Constraints,
+    ) -> Result<Option<bool>, Rejected> {
         Ok(None)
     }
 

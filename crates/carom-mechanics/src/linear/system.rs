@@ -174,26 +174,24 @@ impl System {
         Ok(())
     }
 
-    /// Whether the equilibrium of a load step is stable, where that is known: its tangent, which
-    /// the next step starts with, is positive definite for all motions that keep closed gaps
-    /// closed.
+    /// Whether the equilibrium of a load step is stable, where that is known: its tangent is
+    /// positive definite for all motions that keep closed gaps closed.
     ///
     /// # Errors
-    /// If a load has no value, or the rows are linearly dependent.
+    /// If the tangent has no factor there, or the rows are linearly dependent.
     pub(crate) fn is_stable(
         &mut self,
         equations: &Equations,
         now: &Evaluation,
-        renewal: &mut Renewal,
+        last: Option<&Point>,
     ) -> Result<Option<bool>, Rejected> {
         let model = equations.model;
         let rows = Constraints::of(equations, now);
-        let last = renewal.frozen.point.as_deref();
         let boundary = self.preconditioner.boundary(model, &now.place, &rows, last);
         let point = equations.point(&now.place, &boundary);
-        self.tangent_at(model, &point, true)?;
-        renewal.renewed(point);
-        Ok(self.preconditioner.is_stable(model, &rows)?)
+        self.assembled = None;
+        self.factorisations += 1;
+        self.preconditioner.is_stable(model, &point, &rows)
     }
 
     /// Prepares solves with [M Gᵀ; G 0] over the free dofs that have mass.

@@ -206,17 +206,20 @@ impl<'a> Newton<'a> {
         Ok(now)
     }
 
-    /// Notes whether the equilibrium of a load step is stable. With friction, whose tangent is not
-    /// symmetric, without a factor, and where the tangent has none, it is not known.
+    /// Notes whether the equilibrium of a load step is stable. That is not known with friction and
+    /// pressures that follow the body, whose tangents are not symmetric, without a factor, and
+    /// where the tangent has none.
     fn assess(&mut self, now: &Evaluation) {
         let equations = self.equations;
+        let model = equations.model;
         let is_known = equations.stage.is_static()
-            && !equations.model.has_friction()
+            && !model.has_friction()
+            && !model.loads.follow_sides()
             && !self.work.system.preconditioner.is_iterative();
         if is_known {
+            let last = self.renewal.frozen.point.as_deref();
             let Workspace { system, timings, .. } = &mut *self.work;
-            let is_stable =
-                timed(&mut timings.factor, || system.is_stable(equations, now, &mut self.renewal));
+            let is_stable = timed(&mut timings.factor, || system.is_stable(equations, now, last));
             self.effort.unstable = matches!(is_stable, Ok(Some(false)));
         }
     }

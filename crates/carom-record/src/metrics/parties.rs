@@ -31,21 +31,24 @@ pub(super) fn in_contacts(run: &Run) -> Vec<&str> {
 /// contact, interruptions shorter than `bridge` included.
 pub(super) fn own_episode(run: &Run, body: &str, episode: Episode, bridge: f64) -> Episode {
     let times = run.times();
+    let row_at = |time: f64| times.partition_point(|other| *other < time);
     let is_own = |contact: &str| {
         parties(run, contact).is_some_and(|[one, other]| one != other && [one, other].contains(&Some(body)))
     };
-    let (own, others): (Vec<&ContactRow>, Vec<&ContactRow>) = run
-        .contact
-        .iter()
-        .filter(|row| episode.contains(times, row.time))
-        .partition(|row| is_own(&row.contact));
-    let mut rows: Vec<usize> = own.iter().map(|row| times.partition_point(|time| *time < row.time)).collect();
+    // The record of a run that was killed may end with rows of contact.csv alone, or without them.
+    let known = run.contact.iter().map(|row| row_at(row.time)).filter(|row| *row < times.len()).max();
+    let in_episode =
+        run.contact.iter().filter(|row| episode.contains(times, row.time) && row_at(row.time) < times.len());
+    let (own, others): (Vec<&ContactRow>, Vec<&ContactRow>) =
+        in_episode.partition(|row| is_own(&row.contact));
+    let mut rows: Vec<usize> = own.iter().map(|row| row_at(row.time)).collect();
     rows.sort_unstable();
     rows.dedup();
     let Some(&start) = rows.first().filter(|_| !others.is_empty()) else { return episode };
     let goes_on = |two: &&[usize]| times[two[1]] - times[two[0] + 1] < bridge;
-    let end = rows[rows.windows(2).take_while(goes_on).count()] + 1;
-    Episode { start, end: (end < times.len()).then_some(end) }
+    let last = rows[rows.windows(2).take_while(goes_on).count()];
+    let is_open = episode.end.is_none() && Some(last) == known;
+    Episode { start, end: (!is_open && last + 1 < times.len()).then_some(last + 1) }
 }
 
 /// The parties of a contact, that of the secondary side first.

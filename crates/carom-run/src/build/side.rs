@@ -17,24 +17,17 @@ pub(crate) struct Side {
 }
 
 impl Side {
-    /// The side without these facets, given by their nodes in ascending order.
+    /// The side without these facets, given by their nodes in ascending order; all of it if nothing
+    /// would be left.
     pub(crate) fn without(mut self, closed: &HashSet<Vec<usize>>) -> Self {
-        let is_open: Vec<bool> = self
-            .facets
-            .iter()
-            .map(|facet| {
-                let mut nodes = facet.clone();
-                nodes.sort_unstable();
-                !closed.contains(&nodes)
-            })
-            .collect();
-        if is_open.iter().all(|is_open| *is_open) {
+        let is_open: Vec<bool> =
+            self.facets.iter().map(|facet| !closed.contains(&ascending(facet.clone()))).collect();
+        if closed.is_empty() || !is_open.contains(&true) {
             return self;
         }
-        let mut of_facet = is_open.iter();
-        self.facets.retain(|_| of_facet.next() == Some(&true));
-        let mut of_facet = is_open.iter();
-        self.orientations.retain(|_| of_facet.next() == Some(&true));
+        let facets = self.facets.into_iter().zip(self.orientations).zip(is_open);
+        let open = facets.filter(|(_, is_open)| *is_open).map(|(facet, _)| facet);
+        (self.facets, self.orientations) = open.unzip();
         let left: HashSet<usize> = self.facets.iter().flatten().copied().collect();
         self.nodes.retain(|node| left.contains(node));
         self
@@ -85,6 +78,12 @@ pub(crate) fn side(parts: &[BodyInstance], name: &str, path: &str) -> Result<Sid
         orientations: facets.iter().map(|f| mesh.orientation(f)).collect(),
         shape: mesh.element.facet_shape(),
     })
+}
+
+/// The nodes of a facet in ascending order, by which it is known whatever lists it.
+pub(super) fn ascending(mut nodes: Vec<usize>) -> Vec<usize> {
+    nodes.sort_unstable();
+    nodes
 }
 
 /// The part that a node belongs to.

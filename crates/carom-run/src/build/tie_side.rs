@@ -5,6 +5,12 @@ use carom_solid::{Bounds, FacetPoint, FacetShape, Mesh, Tree};
 /// Part of a facet's size by which a curved one may leave the box of its nodes.
 const BULGE: f64 = 0.5;
 
+/// Distance along the nearest facet, as a share of the distance from it, from which on a point is
+/// beside a side and not above it.
+pub(super) const BESIDE: f64 = 0.1;
+/// Distance from a facet, over its length, that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
 /// A side of a tie in the reference configuration.
 pub(super) struct TieSide {
     pub(super) shape: FacetShape,
@@ -47,19 +53,28 @@ impl TieSide {
         Some((facet, self.shape.closest(&self.places[facet], place)))
     }
 
-    /// The facets all of whose nodes lie on another side, to within what `reach` says of its
-    /// facets.
-    pub(super) fn on(
-        &self,
-        mesh: &Mesh,
-        other: &Self,
-        reach: impl Fn(&Self, usize) -> f64,
-    ) -> Vec<Vec<usize>> {
-        let lies_on = |node: &usize| {
-            let nearest = other.nearest(place_of(mesh, *node));
-            nearest.is_some_and(|(facet, point)| point.distance <= reach(other, facet))
+    /// The facets whose nodes, and the middle of straight ones, lie on another side: not beside its
+    /// end, and no further away than `reach` says of its facets.
+    pub(super) fn on(&self, other: &Self, reach: impl Fn(&Self, usize) -> f64) -> Vec<Vec<usize>> {
+        let lies_on = |place: [f64; 3]| {
+            other.nearest(place).is_some_and(|(facet, point)| {
+                let is_beside = point.beside > BESIDE * point.distance.max(ROUND_OFF * other.length(facet));
+                point.distance <= reach(other, facet) && !is_beside
+            })
         };
-        self.facets.iter().filter(|facet| facet.iter().all(lies_on)).cloned().collect()
+        let middle = |places: &[[f64; 3]]| -> [f64; 3] {
+            std::array::from_fn(|i| places.iter().map(|place| place[i]).sum::<f64>() / places.len() as f64)
+        };
+        let is_closed = |places: &[[f64; 3]]| {
+            places.iter().copied().all(lies_on) && (!self.is_straight() || lies_on(middle(places)))
+        };
+        let facets = self.facets.iter().zip(&self.places);
+        facets.filter(|(_, places)| is_closed(places)).map(|(facet, _)| facet.clone()).collect()
+    }
+
+    /// Whether facets have no nodes but their corners.
+    fn is_straight(&self) -> bool {
+        self.shape.degree() == 1
     }
 
     /// Largest extent of a facet, of a cell if facets are points.

@@ -12,17 +12,14 @@ use carom_mechanics::model::{Circular, Points, Tie};
 use carom_solid::{FacetPoint, Mesh};
 
 use super::mortar_tie;
-use super::side::coordinates;
+use super::side::{ascending, coordinates};
 use super::tie_links::Links;
-use super::tie_side::{TieSide, place_of};
+use super::tie_side::{BESIDE, TieSide, place_of};
 
 /// Distance that is closed unless the tie says more, over the length of a facet.
 const OFFSET: f64 = 1e-6;
 /// Distance, over the length of a facet, below which moving the node may close a tie.
 const ADJUSTABLE: f64 = 0.25;
-/// Distance along the nearest facet, as a share of the distance from it, from which on a node is
-/// beside the primary side and not above it.
-const BESIDE: f64 = 0.1;
 /// Weight of a node that is round-off of a point's place.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -64,7 +61,8 @@ pub(crate) fn ties(case: &Case, meshes: &mut [Mesh], problems: &mut Vec<Problem>
             Ok(Found { bodies, tied, sides, closed: facets }) => {
                 let [secondary, primary] = bodies.map(|body| first[body]);
                 for (facets, first) in facets.into_iter().zip([secondary, primary]) {
-                    closed.extend(facets.into_iter().map(|facet| in_order(facet, first)));
+                    let of_model = |facet: Vec<usize>| facet.into_iter().map(|node| first + node).collect();
+                    closed.extend(facets.into_iter().map(of_model).map(ascending));
                 }
                 for Tied { node, weights } in tied {
                     let weights = weights.into_iter().map(|(node, weight)| (primary + node, weight));
@@ -103,13 +101,6 @@ pub(crate) fn ties(case: &Case, meshes: &mut [Mesh], problems: &mut Vec<Problem>
         meshes[body].nodes[point.node - first[body]].copy_from_slice(place);
     }
     Ties { points, list, closed }
-}
-
-/// The nodes of a facet in ascending order, in the numbers of the model.
-fn in_order(mut facet: Vec<usize>, first: usize) -> Vec<usize> {
-    facet.iter_mut().for_each(|node| *node += first);
-    facet.sort_unstable();
-    facet
 }
 
 /// The tie that makes a node a point.
@@ -176,8 +167,7 @@ fn found(case: &Case, k: usize, tie: &TieSpec, meshes: &[Mesh]) -> Result<Found,
     }
     let source = TieSide::new(&meshes[secondary], own);
     let closed = match &source {
-        Some(source) => [(secondary, source, &target), (primary, &target, source)]
-            .map(|(body, side, opposite)| side.on(&meshes[body], opposite, reach)),
+        Some(source) => [source.on(&target, reach), target.on(source, reach)],
         None => Default::default(),
     };
     Ok(Found { bodies: [secondary, primary], tied, sides: [nodes, carriers], closed })

@@ -210,7 +210,7 @@ fn opposed(contact: &Contact, pair: &Pair, row: &Row) -> Opposed {
         let shares = vec![(contact.kinematics.secondary()[pair.node], 1.0)];
         return Opposed { gap: f64::NAN, normal: [f64::NAN; 3], size: 1.0, center: shares.clone(), shares };
     }
-    let gap = row.gap - contact.kinematics.allowed(pair.node);
+    let gap = row.gap - contact.kinematics.allowed(pair.node) - pair.depth;
     if !contact.kinematics.is_of_field(pair.node) {
         let shares: Vec<(usize, f64)> = row.shares().collect();
         return Opposed { gap, normal: row.normal(), size: 1.0, center: shares.clone(), shares };

@@ -699,3 +699,31 @@ tie = [{ name = "t", secondary = "A.right", primary = "B.left" }"#;
     assert!((over_one - 1.0).abs() < 0.01, "{over_one}");
     assert!((over_joint - over_one).abs() < 1e-3, "{over_joint} {over_one}");
 }
+
+/// A body that ties enclose keeps its boundary, which nothing meets.
+#[test]
+fn a_body_that_ties_enclose_is_no_obstacle_to_contact_between_all() {
+    let text = r#"
+dimension = 2
+material = [{ name = "m", law = "neo-hookean", density = 1.0, young = 100.0, poisson = 0.3 }]
+body = [
+    { name = "inner", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0, 0], max = [1, 1], cells = [2, 2] } },
+    { name = "below", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0, -1], max = [1, 0], cells = [2, 2] } },
+    { name = "above", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0, 1], max = [1, 2], cells = [2, 2] } },
+    { name = "left", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [-1, 0], max = [0, 1], cells = [2, 2] } },
+    { name = "right", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [1, 0], max = [2, 1], cells = [2, 2] } },
+    { name = "striker", material = "m", element = "Q4", mesh = { shape = "rectangle", min = [0, 2.01], max = [1, 3.01], cells = [2, 2] }, velocity = [0, -1] },
+]
+tie = [
+    { name = "a", secondary = "inner.bottom", primary = "below.top" },
+    { name = "b", secondary = "inner.top", primary = "above.bottom" },
+    { name = "c", secondary = "inner.left", primary = "left.right" },
+    { name = "d", secondary = "inner.right", primary = "right.left" },
+]
+support = [{ on = ["below.bottom"], fix = ["x", "y"] }]
+contact = [{ name = "k", between = "all" }]
+time = { scheme = { kind = "bathe", rho_inf = 0.8 }, step = 5e-3, end = 0.05 }
+"#;
+    let sim = finish(simulation(text, &[""; 0]));
+    assert!(sim.state().impulses.iter().any(|impulse| impulse[1].abs() > 0.01));
+}

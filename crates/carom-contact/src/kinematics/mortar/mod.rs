@@ -129,6 +129,7 @@ impl Kinematics for Mortar {
         false
     }
 
+    /// The gap of a coefficient is a mean, which no other row has held before.
     fn keeps_depth(&self, _: &Pair) -> bool {
         false
     }

@@ -12,7 +12,7 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape};
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
-use crate::kinematics::mirror::{Continuation, contains, is_mirror, reflected};
+use crate::kinematics::mirror::{Continuation, Continuations, contains, is_mirror, reflected};
 use crate::kinematics::{Depth, Facets, OnFacet};
 
 /// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
@@ -40,8 +40,8 @@ pub struct Boundary {
     side: usize,
     siblings: usize,
     is_whole: bool,
-    /// What continues the surface where each facet begins; empty if nothing does anywhere.
-    continuations: Vec<Continuation>,
+    /// What continues the surface where a facet begins that is no surface.
+    continuations: Continuations,
 }
 
 /// An edge of a facet; edge k runs from corner k to the next one.
@@ -115,7 +115,7 @@ impl Boundary {
             rings,
             side: side.len(),
             siblings: side.len() + siblings,
-            continuations: Vec::new(),
+            continuations: Continuations::default(),
         }
     }
 
@@ -129,7 +129,7 @@ impl Boundary {
         is_fixed: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let is_mirror = |facet: &[usize]| is_mirror(facet, y, 3, bodies, &is_fixed);
-        self.mark(Continuation::Mirror, is_mirror);
+        self.continuations.mark(Continuation::Mirror, self.nodes.chunks_exact(self.shape.nodes()), is_mirror);
         self
     }
 
@@ -138,25 +138,15 @@ impl Boundary {
     #[must_use]
     pub fn with_closed(mut self, closed: &HashSet<Vec<usize>>) -> Self {
         if !closed.is_empty() {
-            self.mark(Continuation::Tied, |facet| contains(closed, facet));
+            let facets = self.nodes.chunks_exact(self.shape.nodes());
+            self.continuations.mark(Continuation::Tied, facets, |facet| contains(closed, facet));
         }
         self
     }
 
-    /// Marks the facets with certain nodes.
-    fn mark(&mut self, continuation: Continuation, is_one: impl Fn(&[usize]) -> bool) {
-        let facets = self.nodes.chunks_exact(self.shape.nodes());
-        self.continuations.resize(facets.len(), Continuation::None);
-        for (of_facet, nodes) in self.continuations.iter_mut().zip(facets) {
-            if is_one(nodes) {
-                *of_facet = continuation;
-            }
-        }
-    }
-
     /// What continues the surface where a facet begins.
     pub(crate) fn continuation(&self, facet: usize) -> Continuation {
-        self.continuations.get(facet).copied().unwrap_or_default()
+        self.continuations.of(facet)
     }
 
     /// Number of facets of the side.
@@ -336,17 +326,22 @@ impl Boundary {
 
     /// Outward normals on both sides of an edge of a facet, at the share s of its length from its
     /// first corner. Behind a plane of symmetry the mirror image of the facet follows, and behind a
-    /// convex edge with a facet that a tie has closed something like it: the other body.
+    /// convex edge with a facet that a tie has closed the other body, taken for the mirror image.
     pub(crate) fn normals_at_edge(&self, facet: usize, edge: usize, s: f64, y: &[f64]) -> [Vector<3>; 2] {
         let own = self.patch(facet);
         let here = own.at(y, own.along(edge, s)).normal;
         let Some(neighbour) = self.neighbours[facet][edge] else { return [here, here] };
         let patch = self.patch(neighbour.facet);
         let there = patch.at(y, patch.along(neighbour.edge, 1.0 - s)).normal;
-        let along = own.at(y, own.along(edge, 1.0)).position - own.at(y, own.along(edge, 0.0)).position;
-        let is_convex = here.dot(&there) < SHARP && cross(here, there).dot(&along) > 0.0;
-        let is_closed = |facet: usize| self.continuation(facet) == Continuation::Tied;
-        let is_continued = |facet: usize| self.is_mirror(facet) || is_convex && is_closed(facet);
+        let is_convex = || {
+            let [start, end] = [0.0, 1.0].map(|s| own.at(y, own.along(edge, s)).position);
+            here.dot(&there) < SHARP && cross(here, there).dot(&(end - start)) > 0.0
+        };
+        let is_continued = |facet: usize| match self.continuation(facet) {
+            Continuation::None => false,
+            Continuation::Mirror => true,
+            Continuation::Tied => is_convex(),
+        };
         match [facet, neighbour.facet].map(is_continued) {
             [false, false] => [here, there],
             [false, true] => [here, reflected(here, there)],
