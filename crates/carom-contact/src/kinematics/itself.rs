@@ -16,7 +16,7 @@ impl NodeToFacet {
     /// A side against itself: its nodes in the role of the later place, and in that of the earlier
     /// one, where their depth is zero at corners; `piece`: the connected piece of its body to
     /// which each node belongs, from `first_node` on; `reference`: the reference positions, flat
-    /// over all nodes; `at_joints`: what nodes over joints have.
+    /// over all nodes; `at_joints`: the pairs of nodes over joints.
     pub fn of_itself(
         side: &Surface,
         [later, earlier]: [NodesWithDepth; 2],

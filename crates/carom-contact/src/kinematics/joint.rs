@@ -19,7 +19,7 @@ use crate::rows::Rows;
 /// above round-off, and far below what a node slides in a step.
 pub(super) const AT_JOINT: f64 = 1e-7;
 
-/// What a node over a blunt joint of facets has.
+/// The pairs of a node over a blunt joint of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AtJoints {
     /// Whether it has the mean gap of all facets there; otherwise that of one of them.

@@ -13,7 +13,7 @@ use carom_solid::Bounds;
 /// Differences of a coordinate, relative to the size of a facet, up to which it lies in a plane.
 const FLAT: f64 = 1e-9;
 
-/// What continues the surface of a body where a facet begins that is no surface.
+/// Continuation of the surface of a body where a facet begins that is no surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Continuation {
     /// The facet is a surface.
@@ -30,7 +30,7 @@ pub(crate) enum Continuation {
 pub(super) struct Continuations(Vec<Continuation>);
 
 impl Continuations {
-    /// That of a facet.
+    /// The continuation where a facet begins.
     pub(super) fn of(&self, facet: usize) -> Continuation {
         self.0.get(facet).copied().unwrap_or_default()
     }

@@ -30,7 +30,7 @@ pub struct Surface {
     /// Number of facets of the side and of its siblings, the adjoining sides, which come next.
     siblings: usize,
     is_whole: bool,
-    /// What continues the surface where a facet begins that is no surface.
+    /// Continuations of the surface where facets begin that are no surface.
     continuations: Continuations,
 }
 
@@ -117,7 +117,7 @@ impl Surface {
         self
     }
 
-    /// What continues the surface where a facet begins.
+    /// Continuation of the surface where a facet begins.
     pub(crate) fn continuation(&self, facet: usize) -> Continuation {
         self.continuations.of(facet)
     }

@@ -34,7 +34,7 @@ const DRIVEN: f64 = 1e-3;
 pub struct Impact<'a> {
     /// Name of the striker.
     pub striker: &'a str,
-    /// Its contact in the first episode.
+    /// The contact of the striker in the first episode.
     episode: Episode,
     /// The body or obstacle that is struck; none: a fixed obstacle.
     pub others: Vec<Party<'a>>,

@@ -194,7 +194,7 @@ impl Bodies<'_> {
         if stands && multipliers { mortar.without_held(self.fixed) } else { mortar }
     }
 
-    /// What nodes over joints have. The springs of several facets would add up, and in the plane
+    /// Pairs of nodes over joints. The springs of several facets would add up, and in the plane
     /// those of a mean chatter; in load steps of space the slip of a mean may depend on others.
     fn at_joints(&self, k: usize) -> AtJoints {
         let spec = &self.case.contacts[k];

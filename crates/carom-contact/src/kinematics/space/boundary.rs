@@ -40,7 +40,7 @@ pub struct Boundary {
     side: usize,
     siblings: usize,
     is_whole: bool,
-    /// What continues the surface where a facet begins that is no surface.
+    /// Continuations of the surface where facets begin that are no surface.
     continuations: Continuations,
 }
 
@@ -144,7 +144,7 @@ impl Boundary {
         self
     }
 
-    /// What continues the surface where a facet begins.
+    /// Continuation of the surface where a facet begins.
     pub(crate) fn continuation(&self, facet: usize) -> Continuation {
         self.continuations.of(facet)
     }

@@ -16,7 +16,7 @@ impl NodeToPatch {
     /// A side against itself: its nodes in the role of the later place, and those in the role of
     /// the earlier one, whose depth is zero at sharp edges; `piece`: the connected piece of its
     /// body to which each node belongs, from `first_node` on; `reference`: the reference positions,
-    /// flat over all nodes; `at_joints`: what nodes over joints have.
+    /// flat over all nodes; `at_joints`: the pairs of nodes over joints.
     pub fn of_itself(
         side: &Boundary,
         nodes: Vec<usize>,
