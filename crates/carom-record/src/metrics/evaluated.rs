@@ -123,7 +123,7 @@ pub fn of_run_beside(run: &Run, measured: &[Overlay]) -> Vec<Metric> {
     if impacts > 1 && !run.manifest.facts.is_static {
         metrics.extend((1..=impacts).map(|n| Metric {
             name: format!("energy_lost:{n}").into(),
-            value: energy_lost_at(&given, n),
+            value: energy_lost_at(&run.history, n),
             unit: String::new(),
             definition: "energy lost over the N-th contact episode, divided by the largest kinetic + strain energy",
         }));

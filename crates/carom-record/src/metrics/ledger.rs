@@ -123,9 +123,7 @@ pub(super) fn at_worst_impact(given: &Given) -> Option<f64> {
     losses.reduce(|worst, next| if next.abs() > worst.abs() { next } else { worst })
 }
 
-/// Energy lost over the n-th contact episode, counted from 1; none if it did not end, and in load
-/// steps.
-pub(crate) fn energy_lost_at(given: &Given, n: usize) -> Option<f64> {
-    let episode = given.episodes.get(n.checked_sub(1)?).filter(|_| has_balance(given))?;
-    over(given.history, *episode)
+/// Energy lost over the n-th contact episode, counted from 1; none if it did not end.
+pub fn energy_lost_at(history: &History, n: usize) -> Option<f64> {
+    Given::of(history).episodes.get(n.checked_sub(1)?).and_then(|e| over(history, *e))
 }

@@ -18,7 +18,7 @@ fn metric(given: &Given, name: &str) -> Result<f64, Reason> {
         if given.run.is_some_and(|run| run.manifest.facts.is_static) {
             return Err("energy_lost:N is not defined for load steps".into());
         }
-        return metrics::energy_lost_at(given, n)
+        return metrics::energy_lost_at(given.history, n)
             .ok_or_else(|| format!("the record has no completed impact number {n}").into());
     }
     if let Some((before, after)) = name.rsplit_once(':') {

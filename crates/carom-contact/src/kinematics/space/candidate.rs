@@ -97,8 +97,8 @@ impl NodeToPatch {
     ) -> Option<OnFacet<[f64; 2]>> {
         let node = self.secondary[place_of];
         let found = self.reached(swept, near, paths, place_of, before, now);
-        // One that is inside, and that the edge does not keep out at the end of the step any more,
-        // is found in time.
+        // A node that is inside its facet needs a pair as soon as the sharp edge beside it stops
+        // keeping it out, which may be at the end of this step.
         let is_inside = |OnFacet { facet, .. }| {
             let patch = self.primary.patch(facet);
             let start = place(before, node);

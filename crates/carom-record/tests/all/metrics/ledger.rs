@@ -1,6 +1,6 @@
 //! Energy balance, from the columns of the ledger.
 
-use carom_record::metrics::all;
+use carom_record::metrics::{all, energy_lost_at};
 use carom_record::{Column, History};
 
 /// Two impacts by hand. The energy 10 drops to 9 in rows 1 to 3 and to 8.5 in flight, and rises
@@ -34,6 +34,8 @@ fn two_impacts_by_hand() {
     assert_eq!(value("contact_episodes"), Some(2.0));
     assert_eq!((value("energy_lost"), value("energy_drift")), (Some(0.125), Some(0.2)));
     assert_eq!((value("dissipated_integrator"), value("dissipated_contact")), (Some(0.1), Some(0.025)));
+    assert_eq!((energy_lost_at(&history, 1), energy_lost_at(&history, 2)), (Some(0.1), Some(-0.025)));
+    assert_eq!((energy_lost_at(&history, 3), energy_lost_at(&history, 0)), (None, None));
     assert_eq!(value("energy_lost_impact"), Some(0.1));
     assert_eq!(value("energy_error"), Some(0.125));
 }
