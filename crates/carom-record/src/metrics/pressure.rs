@@ -10,10 +10,10 @@
 //!
 //! (H. Hertz 1882; K. L. Johnson, *Contact Mechanics*, 1985, § 4.2.) If the pressure at one
 //! outermost node alone is nearly the largest one, the model is one half of a symmetric problem,
-//! and c is the coordinate of that node. Where the parabola leaves more than half of the variance of
-//! p², as under a flat punch with its peaks at the edges, there is no ellipse. Of several contacts,
-//! the one with the largest load is used. Places along the contact are those of the plane; in space
-//! there are none.
+//! and c is the coordinate of that node. Where the parabola leaves more than half of the variance
+//! of p², as under a flat punch with its peaks at the edges, there is no ellipse. Of several
+//! contacts, the one with the largest load is used. Places along the contact are those of the
+//! plane; in space there are none.
 
 use super::samples::extreme;
 use crate::{ContactRow, Run};
