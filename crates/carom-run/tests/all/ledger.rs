@@ -106,7 +106,10 @@ pub(super) fn of_alpha(model: &Model, scheme: &Scheme, before: &State, now: &Sta
     let worked: f64 = (0..moved.len()).map(work).sum();
     let alpha_f = if acts_at_end > 0 { 0.0 } else { scheme.alpha_f };
     let stored = end.strain - start.strain + end.kinetic - start.kinetic;
-    Some(worked + friction_lag(model, before, now, alpha_f) - stored)
+    let mut rubs = model.contacts.iter().filter(|contact| contact.friction.is_some());
+    let on_springs = !rubs.all(|contact| contact.interface.is_constraint());
+    let lag = if on_springs { friction_lag(before, now, alpha_f) } else { 0.0 };
+    Some(worked + lag - stored)
 }
 
 /// Whether a gap has closed of a contact whose velocities are projected.
@@ -130,13 +133,9 @@ fn has_friction(model: &Model) -> bool {
     model.contacts.iter().any(|contact| contact.friction.is_some())
 }
 
-/// Work of friction on springs, in the forces that follow from the balance, with the mean of both
-/// ends, less that with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
-fn friction_lag(model: &Model, before: &State, now: &State, alpha_f: f64) -> f64 {
-    let mut rubs = model.contacts.iter().filter(|contact| contact.friction.is_some());
-    if rubs.all(|contact| contact.interface.is_constraint()) {
-        return 0.0;
-    }
+/// Work of friction on springs and in load steps, in the forces that follow from the balance, with
+/// the mean of both ends, less that with its mean (1 − α_f) q_s+1 + α_f q_s, which is booked.
+fn friction_lag(before: &State, now: &State, alpha_f: f64) -> f64 {
     let moved = sum(&now.y, -1.0, &before.y);
     let stored = now.ledger.stick_springs - before.ledger.stick_springs;
     let booked = stored - (now.ledger.friction_work - before.ledger.friction_work);
@@ -200,11 +199,15 @@ fn of_stages(
     if first.internal == carom_time::Internal::DiscreteGradient {
         work = end.strain - start.strain;
     }
-    let change = sum(&v, -1.0, &before.v);
-    Some(
-        dot(&moved, &times_mass(model, &change)) / dt - (end.kinetic - start.kinetic) + work
-            - (end.strain - start.strain),
-    )
+    let inertia = times_mass(model, &sum(&v, -1.0, &before.v));
+    if kernel.stages() == 1 && strikes(model, before, now) {
+        // An impulse works at the mean velocity, not along the path.
+        for i in (0..moved.len()).filter(|i| !model.fixed[*i] && !model.massless[*i]) {
+            let contact = model.gravity[i] + now.f_external[i] - end.internal[i] - inertia[i] / dt;
+            work -= (0.5 * dt * (before.v[i] + v[i]) - moved[i]) * (contact - before.f_contact[i]);
+        }
+    }
+    Some(dot(&moved, &inertia) / dt - (end.kinetic - start.kinetic) + work - (end.strain - start.strain))
 }
 
 /// What a step of Chung and Hulbert's scheme with jumps of the velocity dissipates, or one of
@@ -250,7 +253,8 @@ fn of_statics(model: &Model, before: &State, now: &State) -> f64 {
     };
     let moved = now.y.iter().zip(&before.y).enumerate();
     let worked = moved.map(|(i, (y, old))| (y - old) * work(i)).sum::<f64>();
-    worked + friction_lag(model, before, now, 0.0) - (end.strain - start.strain)
+    let lag = if has_friction(model) { friction_lag(before, now, 0.0) } else { 0.0 };
+    worked + lag - (end.strain - start.strain)
 }
 
 /// Newton's tolerance.

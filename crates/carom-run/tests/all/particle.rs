@@ -59,4 +59,14 @@ impl Particle {
         self.last = [d, self.v];
         (self.v, self.a, self.load, self.time) = (v, a, end, self.time + dt);
     }
+
+    /// A projection replaces the acceleration by that of the balance; a two-step scheme goes on
+    /// from a step with it (`carom-time/src/schemes/bdf2.rs`).
+    pub(super) fn project(&mut self, dt: f64) {
+        self.a = self.load;
+        for i in 0..3 {
+            self.last[0][i] = dt * (self.v[i] - 0.5 * dt * self.a[i]);
+            self.last[1][i] = self.v[i] - dt * self.a[i];
+        }
+    }
 }
