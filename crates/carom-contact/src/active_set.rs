@@ -9,14 +9,12 @@
 //! meet, the second can be violated while open and in tension while closed, against the first. Then
 //! the second alone solves it: the two are exchanged.
 
+use crate::constants::ALIKE;
 use crate::visited::Visited;
 
 /// Tension, as a fraction of the largest multiplier, above which an active pair is released: ties
 /// stay active.
 const RELEASE: f64 = 1e-10;
-
-/// Cosine of the gradients of two gaps, 60°, from which one nearly depends on the other.
-const ALIKE: f64 = 0.5;
 
 /// Gap and multiplier of one pair, and whether it is active.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,13 +8,10 @@ use std::f64::consts::PI;
 
 use carom_algebra::Vector;
 
+use crate::constants::SHARPEST;
 use crate::kinematics::{Facets, Surface};
 use crate::places::Places;
 use crate::skin::{CHORDS, Skin};
-
-/// Angle of a body at a node, 30°, below which a node on the boundary cannot be told from one
-/// inside a fold.
-const SHARPEST: f64 = PI / 6.0;
 
 /// A node of a boundary that lies inside its own body.
 #[derive(Clone, Copy, Debug, PartialEq)]

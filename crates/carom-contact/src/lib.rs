@@ -2,6 +2,7 @@
 //! positions, independent of time integration and matrices.
 
 mod active_set;
+pub mod constants;
 mod depth;
 mod discrete_gradient;
 mod friction;
@@ -28,10 +29,10 @@ pub use interface::{
     Unilateral,
 };
 pub use kinematics::{
-    AtJoints, Boundary, Carrier, ClosedSurface, Combined, ContactPoint, Crossings, Depth, Detection,
-    EdgePoints, EdgeToEdge, Faceted, Kinematics, Mortar, NodalPressure, NodeToFacet, NodeToObstacle,
-    NodeToPatch, NodesWithDepth, Obstacle, OnFacet, Outward, Passed, Polyline, PolylineError, Quadrature,
-    Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet,
+    AtJoints, BetweenNodes, Boundary, Carrier, ClosedSurface, Combined, ContactPoint, Crossings, Depth,
+    Detection, EdgePoints, EdgeToEdge, Faceted, Kinematics, Mortar, NodalPressure, NodeToFacet,
+    NodeToObstacle, NodeToPatch, NodesWithDepth, Obstacle, OnFacet, Outward, Passed, Polyline, PolylineError,
+    Quadrature, Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet,
 };
 pub use pair::{ContactError, Pair, PairEvent, Pairing};
 pub use rows::{Row, Rows};

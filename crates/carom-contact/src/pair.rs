@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use educe::Educe;
 use serde::{Deserialize, Serialize};
 
+use crate::constants::{WATCHED, WITHIN_STEP};
 use crate::friction::Tangential;
 use crate::kinematics::OnFacet;
 
@@ -76,13 +77,6 @@ impl Pair {
     }
 }
 
-/// Margin around a facet's path within which a node is tracked, relative to the path's size: before
-/// contact, and as far as facets are extrapolated.
-const WATCHED: f64 = 0.35;
-/// Margin around a facet's path within which a node is tracked, relative to the path's size, when
-/// only contacts within the step matter.
-const NEAR: f64 = 0.01;
-
 /// Orders pairs by their nodes; those of one node remain in their order.
 pub(crate) fn in_order(pairs: &mut [Pair]) {
     pairs.sort_by_key(|pair| pair.node);
@@ -112,7 +106,7 @@ impl Pairing {
     /// Pairs at the start of an explicit step, which moves no further than predicted: only nodes
     /// that may come into contact within it are tracked.
     pub fn near(pairs: Vec<Pair>) -> Self {
-        Self { margin: NEAR, ..Self::new(pairs) }
+        Self { margin: WITHIN_STEP, ..Self::new(pairs) }
     }
 
     /// Drops the inactive pairs and the hand-overs, so that a new search depends on positions

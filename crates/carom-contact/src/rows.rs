@@ -6,8 +6,7 @@
 
 use carom_algebra::Vector;
 
-/// Area between two tangents, over the sum of their squares, up to which they are parallel.
-const PARALLEL: f64 = 1e-6;
+use crate::constants::CANCELS;
 
 /// Constraint rows: gaps with their gradients, all over positions of one dimension.
 #[derive(Clone, Debug)]
@@ -226,7 +225,7 @@ impl Rows {
         let mixed = along.dot(&across);
         let squares = [along.dot(&along), across.dot(&across)];
         let area = (squares[0] * squares[1] - mixed * mixed).max(0.0).sqrt();
-        if area <= PARALLEL * (squares[0] + squares[1]) {
+        if area <= CANCELS * (squares[0] + squares[1]) {
             return [along.0, across.0];
         }
         let scale = area * (squares[0] + squares[1] + 2.0 * area).sqrt();

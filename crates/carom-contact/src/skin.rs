@@ -6,6 +6,7 @@
 use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull, Tree};
 
+use crate::constants::SHALLOW;
 use crate::depth::NearestOnFacet;
 use crate::kinematics::{Depth, Facets, Folds, Side, Surface, Turns, amplification};
 use crate::places::Places;
@@ -96,7 +97,7 @@ impl Skin {
         let (facet, _) = nearest?;
         let found = self.surface.depth(facet, point, y);
         // Behind a winding of a spiral, or another part, a node is not inside that facet.
-        let is_behind = -found.distance > TOLD_BY_ANGLE * self.surface.length(facet, places);
+        let is_behind = -found.distance > SHALLOW * self.surface.length(facet, places);
         if is_behind && !self.surface.covers(node, places) {
             return Some(Depth { distance: -found.distance, ..found });
         }
@@ -138,10 +139,6 @@ impl Skin {
 
 /// Number of chords by which a curved facet is approximated.
 pub(crate) const CHORDS: usize = 4;
-
-/// Depth behind a facet, relative to its length, from which on the angle under which a point sees
-/// the boundary is asked whether it is inside the body. Chords are too coarse for smaller ones.
-pub(crate) const TOLD_BY_ANGLE: f64 = 0.01;
 
 /// Whether two segments cross, their ends not included.
 fn cross(a: [Vector<2>; 2], b: [Vector<2>; 2]) -> bool {

@@ -172,8 +172,12 @@ pub fn spring(model: &Model) -> Option<f64> {
     system.form_mass(model, &Constraints::none(model.dimension)).ok()?;
     let mut highest: Option<f64> = None;
     let springs = model.contacts.iter().flat_map(|contact| {
-        let nodes = contact.kinematics.secondary().iter().enumerate();
-        nodes.filter_map(|(place, node)| Some((*node, contact.interface.stiffness(place)?)))
+        let springs = contact.springs.iter();
+        springs.flat_map(|springs| {
+            let factor = springs.factors[0];
+            let nodes = contact.kinematics.secondary().iter().zip(&springs.diagonal.of_rows);
+            nodes.map(move |(node, diagonal)| (*node, factor * diagonal))
+        })
     });
     for (node, stiffness) in springs {
         for (i, _) in model.free.iter().enumerate().filter(|(_, dof)| **dof / model.dimension == node) {

@@ -175,7 +175,7 @@ pub fn press(model: &Model, state: &mut State, gaps: &[Rows]) -> f64 {
                 lambda: pair.lambda,
                 active: pair.active,
                 multiplier: 0.0,
-                stiffness: 0.0,
+                stiffness: contact.spring(pair).unwrap_or(0.0),
             };
             let answer = contact.interface.respond(&at);
             (pair.active, pair.lambda) = (answer.active, answer.lambda);

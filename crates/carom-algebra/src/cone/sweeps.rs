@@ -116,7 +116,7 @@ pub fn coulomb(
         };
         let of_part: Vec<Kind> = members.iter().map(local).collect();
         let guess = solution.clone();
-        Coupled { a: &part, b: &right, kinds: &of_part, near: &near, guess: &guess }.solve(&mut solution)?;
+        Coupled { a: &part, b: right, kinds: &of_part, near: &near, guess }.solve(&mut solution)?;
         members.iter().zip(solution).for_each(|(&i, value)| z[i] = value);
     }
     Ok(())
@@ -126,17 +126,17 @@ pub fn coulomb(
 struct Coupled<'a> {
     /// Matrix A, row by row.
     a: &'a [f64],
-    b: &'a [f64],
+    b: Vec<f64>,
     kinds: &'a [Kind],
     /// Addition of the proximal step to the diagonal.
     near: &'a [f64],
     /// Forces from which the proximal step begins.
-    guess: &'a [f64],
+    guess: Vec<f64>,
 }
 
 impl Coupled<'_> {
     /// Overwrites `z`, a first guess, with the solution of the coupled problem.
-    fn solve(&self, z: &mut Vec<f64>) -> Result<(), LinearError> {
+    fn solve(mut self, z: &mut Vec<f64>) -> Result<(), LinearError> {
         let n = self.kinds.len();
         let mut pressed = Vec::new();
         for attempt in 0..ATTEMPTS {
@@ -159,7 +159,50 @@ impl Coupled<'_> {
                 return Ok(());
             }
         }
-        Err(LinearError::NoStates { forces: n, sweeps: ATTEMPTS * SWEEPS })
+        z.clone_from(&self.guess);
+        for _ in 0..ATTEMPTS {
+            self.begin_at(z);
+            (0..SWEEPS).for_each(|_| self.sweep(z));
+            if self.is_solved_by(z) {
+                return Ok(());
+            }
+        }
+        Err(LinearError::NoStates { forces: n, sweeps: 2 * ATTEMPTS * SWEEPS })
+    }
+
+    /// Begins the proximal step of dependent rows at these forces.
+    fn begin_at(&mut self, z: &[f64]) {
+        for (i, force) in z.iter().enumerate() {
+            self.b[i] += self.near[i] * (self.guess[i] - force);
+            self.guess[i] = *force;
+        }
+    }
+
+    /// Whether the sweeps have found admissible forces that no motion changes. What rests with
+    /// forces on the edges of their cones, as a body in a corner does, has no states of which one
+    /// could be told from another.
+    fn is_solved_by(&self, z: &[f64]) -> bool {
+        let n = self.kinds.len();
+        let motions: Vec<f64> =
+            (0..n).map(|i| self.motion(z, i) + self.near[i] * (self.guess[i] - z[i])).collect();
+        let moved = ROUND_OFF * max_abs(&self.b).max(max_abs(&motions));
+        let stays = |i: usize| {
+            if self.is_second(i) {
+                return true;
+            }
+            let Some(j) = second(self.kinds, i) else {
+                let stiffness = self.diagonal(i);
+                let pulled = self.project(z, i, z[i] - motions[i] / stiffness);
+                return stiffness <= 0.0 || stiffness * (pulled - z[i]).abs() <= moved;
+            };
+            let stiffness = stiffness(self.a, n, [i, j]);
+            let Kind::Tangential { of, coefficient, limit } = self.kinds[i] else { return true };
+            let (radius, _) = radius(coefficient, limit, z[of]);
+            let pulled = on_disc([i, j].map(|row| z[row] - motions[row] / stiffness), radius);
+            let change = (pulled[0] - z[i]).hypot(pulled[1] - z[j]);
+            stiffness <= 0.0 || stiffness * change <= moved
+        };
+        (0..n).all(stays)
     }
 
     /// The exact solution for the states of these forces, if it obeys the law.
@@ -176,7 +219,7 @@ impl Coupled<'_> {
         let right: Vec<f64> = (0..n).map(|i| self.b[i] + self.near[i] * (self.guess[i] - z[i])).collect();
         let exact = settle(self.a, &right, self.kinds, &mut states, z)?;
         let Self { a, kinds, near, .. } = *self;
-        let of_these = Coupled { a, b: &right, kinds, near, guess: z };
+        let of_these = Coupled { a, b: right, kinds, near, guess: z.to_vec() };
         let obeys = of_these.obeys(&exact, &states);
         Some((exact, obeys))
     }
@@ -367,7 +410,7 @@ impl Coupled<'_> {
         let motions: Vec<f64> = (0..n).map(|i| self.motion(exact, i)).collect();
         let size = |values: &[f64]| ROUND_OFF * values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         let force = size(exact);
-        let moved = size(self.b).max(size(&motions));
+        let moved = size(&self.b).max(size(&motions));
         let pair = |values: &[f64], i: usize| match second(self.kinds, i) {
             Some(j) => [values[i], values[j]],
             None if self.is_second(i) => [values[i - 1], values[i]],

@@ -12,18 +12,9 @@
 
 use super::{Answer, Direction, Interface, Point};
 
-/// Energy-conserving penalty contact with a stiffness for each secondary node.
-#[derive(Clone, Debug)]
-pub struct ConservingPenalty {
-    stiffness: Vec<f64>,
-}
-
-impl ConservingPenalty {
-    /// Energy-conserving springs with a stiffness (force per gap, > 0) for each secondary node.
-    pub fn new(stiffness: Vec<f64>) -> Self {
-        Self { stiffness }
-    }
-}
+/// Energy-conserving penalty contact: springs with the stiffness of the [`Point`].
+#[derive(Clone, Copy, Debug)]
+pub struct ConservingPenalty;
 
 impl Interface for ConservingPenalty {
     fn is_constraint(&self) -> bool {
@@ -38,7 +29,7 @@ impl Interface for ConservingPenalty {
         if !(at.gap.is_finite() && at.start.is_finite()) {
             return Answer::default();
         }
-        let k = self.stiffness[at.node];
+        let k = at.stiffness;
         let (lambda, slope) = discrete_gradient(k, at.start, at.gap - at.start);
         let energy = 0.5 * k * at.gap.min(0.0).powi(2);
         if slope > 0.0 {
@@ -46,10 +37,6 @@ impl Interface for ConservingPenalty {
         } else {
             Answer { energy, ..Answer::default() }
         }
-    }
-
-    fn stiffness(&self, node: usize) -> Option<f64> {
-        Some(self.stiffness[node])
     }
 }
 

@@ -34,7 +34,7 @@ pub struct Point {
     pub active: bool,
     /// Multiplier λ̂ of the last round of an augmented Lagrangian.
     pub multiplier: f64,
-    /// Stiffness r of the spring of an augmented Lagrangian.
+    /// Stiffness of the spring of a penalty (force per gap, > 0), or r of an augmented Lagrangian.
     pub stiffness: f64,
 }
 
@@ -91,9 +91,4 @@ pub trait Interface: Send + Sync {
 
     /// The traction, residual and compliance of a pair in a given state.
     fn respond(&self, at: &Point) -> Answer;
-
-    /// Stiffness of the contact spring of a secondary node; none for a constraint.
-    fn stiffness(&self, _node: usize) -> Option<f64> {
-        None
-    }
 }

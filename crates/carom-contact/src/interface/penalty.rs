@@ -2,18 +2,9 @@
 
 use super::{Answer, Interface, Point};
 
-/// Penalty contact: a spring for each secondary node.
-#[derive(Clone, Debug)]
-pub struct Penalty {
-    stiffness: Vec<f64>,
-}
-
-impl Penalty {
-    /// Penalty springs with a stiffness (force per gap, > 0) for each secondary node.
-    pub fn new(stiffness: Vec<f64>) -> Self {
-        Self { stiffness }
-    }
-}
+/// Penalty contact: springs with the stiffness of the [`Point`].
+#[derive(Clone, Copy, Debug)]
+pub struct Penalty;
 
 impl Interface for Penalty {
     fn is_constraint(&self) -> bool {
@@ -21,7 +12,7 @@ impl Interface for Penalty {
     }
 
     fn respond(&self, at: &Point) -> Answer {
-        let k = self.stiffness[at.node];
+        let k = at.stiffness;
         if at.gap >= 0.0 {
             return Answer::default();
         }
@@ -32,9 +23,5 @@ impl Interface for Penalty {
             energy: 0.5 * k * at.gap * at.gap,
             ..Answer::default()
         }
-    }
-
-    fn stiffness(&self, node: usize) -> Option<f64> {
-        Some(self.stiffness[node])
     }
 }

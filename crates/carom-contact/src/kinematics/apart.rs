@@ -14,8 +14,7 @@
 
 use carom_solid::Bounds;
 
-/// Allowance for round-off, relative to the clearance between two sets of nodes.
-const ROUND_OFF: f64 = 1e-9;
+use crate::constants::ROUND_OFF;
 
 /// The nodes of two sets that are far from each other, and how far they may move before a search is
 /// needed.

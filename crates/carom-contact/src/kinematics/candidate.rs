@@ -4,29 +4,16 @@
 use carom_algebra::Vector;
 
 use super::facets::{Facets, OnFacet};
-use super::facing::{Closest, NEAR_END, REACH, Reached};
-use super::joint::AT_JOINT;
+use super::facing::{Closest, Reached};
 use super::node_to_facet::{Detection, NodeToFacet, Tools};
-use super::opposed::{BLUNT, FLUSH, presses};
+use super::opposed::presses;
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
+use crate::constants::{AT_JOINT, FLUSH, KINK_SINE, MEETS, NEAR_END, PARALLEL_SINE, REACH_XI};
 use crate::kinematics::Kinematics;
 use crate::pair::Pair;
 use crate::places::Places;
-
-/// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
-/// which a node has not crossed it.
-const BEHIND: f64 = 1e-6;
-/// Distance behind a facet at the start of a step, relative to its length, beyond which a node has
-/// not crossed it, if the whole boundary of the body is known: a node whose nearest facet is of the
-/// side has then entered the body there.
-const RECAPTURED: f64 = 0.02;
-/// Distance behind a facet at the start of a step, relative to the distance from the end of the
-/// side, beyond which a node past that end has not crossed the facet, or to the distance at which a
-/// corner is left to a node: the sine of 10°, the angle up to which facets that meet there count as
-/// parallel (`reversed.rs`).
-pub(super) const AROUND: f64 = 0.17;
 
 /// Whether a point is at an end of its facet, up to [`NEAR_END`] of the facet's length, or past it.
 fn is_near_end(xi: f64) -> bool {
@@ -89,7 +76,7 @@ impl NodeToFacet {
     ) -> Option<Reached> {
         let node = self.secondary[place];
         let is_corners = |reached: &Reached| {
-            let closest = self.primary.facet(reached.facet).closest_point(now, now.at(node), REACH);
+            let closest = self.primary.facet(reached.facet).closest_point(now, now.at(node), REACH_XI);
             self.is_left_to_corner(node, reached.facet, closest.unwrap_or(reached.xi), before)
         };
         self.reached(tools, place, before, now).filter(|reached| !is_corners(reached))
@@ -123,7 +110,7 @@ impl NodeToFacet {
         let entered_elsewhere = first.is_some_and(|first| !self.primary.is_of_side(first.facet));
         // A node that has entered near the end of a facet may be in front of another one now.
         let still_faced = |facet: usize| {
-            let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH);
+            let xi = self.primary.facet(facet).closest_point(now, now.at(node), REACH_XI);
             self.detection == Detection::Trajectory
                 || xi.is_some_and(|xi| !self.primary.faces_nothing(facet, xi, now))
         };
@@ -143,8 +130,8 @@ impl NodeToFacet {
         if first.is_some() && !entered_elsewhere {
             return Some(Reached { facet, xi, crossed: true });
         }
-        let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH);
-        let behind_by = if self.primary.is_whole() { RECAPTURED } else { BEHIND };
+        let start = self.primary.facet(facet).closest_point(before, before.at(node), REACH_XI);
+        let behind_by = if self.primary.is_whole() { FLUSH } else { MEETS };
         let depth = |length: f64| slack + behind_by * length;
         let behind = |s| self.gap(node, facet, s, before) < -depth(self.primary.length(facet, before));
         if start.map_or(entered_elsewhere, behind) {
@@ -159,7 +146,7 @@ impl NodeToFacet {
     fn is_between(&self, node: usize, closest: &Closest, y: Places) -> bool {
         let next = self.primary.neighbour(closest.facet, closest.xi > 0.0);
         next.is_some_and(|next| {
-            let xi = self.primary.facet(next).closest_point(y, y.at(node), REACH);
+            let xi = self.primary.facet(next).closest_point(y, y.at(node), REACH_XI);
             let apart = xi.map_or(f64::INFINITY, |xi| self.gap(node, next, xi, y) - closest.gap);
             apart.abs() <= AT_JOINT * self.primary.length(next, y)
         })
@@ -195,9 +182,9 @@ impl NodeToFacet {
             xi.is_some_and(|xi| own.gap(facet, xi, corner, y).abs() <= near)
         };
         if is_near_end(xi) {
-            !presses(&normals, normal, AROUND)
+            !presses(&normals, normal, PARALLEL_SINE)
         } else {
-            !presses(&normals, normal, BLUNT) && around.iter().any(meets)
+            !presses(&normals, normal, KINK_SINE) && around.iter().any(meets)
         }
     }
 
@@ -220,7 +207,7 @@ impl NodeToFacet {
         let is_held = |facet: usize| held.iter().any(|pair| pair.facet == facet || is_next(pair, facet));
         tools.search.retain(|facet| !is_held(facet));
         let Met { facet, .. } = self.first_of(&mut tools.swept, tools.search.found(), node, before, now)?;
-        let xi = side.facet(facet).closest_point(now, now.at(node), REACH)?;
+        let xi = side.facet(facet).closest_point(now, now.at(node), REACH_XI)?;
         let faces = side.is_of_side(facet) && !side.faces_nothing(facet, xi, now);
         let enters = faces
             && !self.ends_at(node, facet, xi)
@@ -237,13 +224,13 @@ impl NodeToFacet {
         let slack = self.slack(place);
         near.iter().filter(|&&facet| self.primary.is_of_side(facet)).find_map(|&facet| {
             let shape = self.primary.facet(facet);
-            let xi = shape.closest_point(now, now.at(node), REACH)?;
-            let start = shape.closest_point(before, before.at(node), REACH)?;
+            let xi = shape.closest_point(now, now.at(node), REACH_XI)?;
+            let start = shape.closest_point(before, before.at(node), REACH_XI)?;
             let length = self.primary.length(facet, before);
             let past = NEAR_END * length;
             let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
-                && self.gap(node, facet, start, before) + slack >= -AROUND * past;
+                && self.gap(node, facet, start, before) + slack >= -PARALLEL_SINE * past;
             enters.then_some(Reached { facet, xi, crossed: false })
         })
     }

@@ -7,7 +7,7 @@
 use carom_algebra::{Mat, Threads};
 
 use super::obstacle::Tip;
-use super::{Kinematics, NodalPressure, Passed};
+use super::{BetweenNodes, Kinematics, NodalPressure, Passed};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -155,6 +155,11 @@ impl Kinematics for Combined {
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
         let (part, pair) = self.of_pair(pair);
         part.facet_nodes(&pair)
+    }
+
+    fn between_nodes(&self, pair: &Pair) -> Option<BetweenNodes<'_>> {
+        let (part, pair) = self.of_pair(pair);
+        part.between_nodes(&pair)
     }
 
     fn rotation_of_primary(&self, pair: &Pair, ends: [&[f64]; 2]) -> Option<Mat<3>> {

@@ -2,16 +2,13 @@
 //! and their derivatives (`gap.rs`), at the closest point of a pair's facet or at a frozen one.
 
 use super::facets::Facets;
-use super::facing::REACH;
 use super::gap::Gap;
-use super::joint::{AT_JOINT, OnFacets};
+use super::joint::OnFacets;
 use super::node_to_facet::{ContactPoint, NodeToFacet};
+use crate::constants::{AT_JOINT, REACH_XI, WANDER_XI};
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;
 use crate::rows::Rows;
-
-/// |ξ| up to which the closest point of a pair is followed before Newton's method has converged.
-const WANDER: f64 = 3.0;
 
 impl NodeToFacet {
     /// Coordinate ξ of the point of a pair's facet that is closest to its node, searched from the
@@ -19,7 +16,7 @@ impl NodeToFacet {
     pub(super) fn closest(&self, pair: &Pair, y: Places) -> Option<f64> {
         let facet = self.primary.facet(pair.facet);
         let from = y.at(self.secondary[pair.node]);
-        facet.closest_from(y, from, pair.xi, WANDER).or_else(|| facet.closest_point(y, from, REACH))
+        facet.closest_from(y, from, pair.xi, WANDER_XI).or_else(|| facet.closest_point(y, from, REACH_XI))
     }
 
     /// Gap of a pair at its contact point.
@@ -72,7 +69,7 @@ impl OnFacets for NodeToFacet {
     }
 
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
-        if !self.at_joints.mean || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH - 1.0 {
+        if !self.at_joints.mean || self.is_frozen() || (pair.xi.abs() - 1.0).abs() > REACH_XI - 1.0 {
             return None;
         }
         let forward = pair.xi > 0.0;

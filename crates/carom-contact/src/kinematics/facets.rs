@@ -3,8 +3,7 @@
 use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape, Hull, Tree, longest_edge, shortest_edge};
 
-/// Distance, relative to the size of a facet, up to which another facet is near it.
-const NEAR: f64 = 0.25;
+use crate::constants::NEAR_FACET;
 
 /// Position of a point relative to the boundary of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +96,7 @@ pub trait Facets<const D: usize> {
         let mut least = f64::INFINITY;
         for a in 0..self.all() {
             let bounds = self.bounds(hull, a, y);
-            let around = NEAR * bounds.size();
+            let around = NEAR_FACET * bounds.size();
             if self.apart_from(a, &bounds.grown(around), tree).next().is_some() {
                 return 0.0;
             }

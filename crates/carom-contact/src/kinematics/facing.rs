@@ -15,21 +15,9 @@ use carom_algebra::Vector;
 use super::facets::Facets;
 use super::hand_over::Next;
 use super::surface::Surface;
+use crate::constants::{PAST_END, PAST_SIDE, REACH_XI, ROUND_OFF};
 use crate::pair::Pair;
 use crate::places::Places;
-
-/// |ξ| up to which a facet in the plane is extrapolated beyond its ends.
-pub(super) const REACH: f64 = 1.2;
-/// Excess |ξ| − 1 above which a closest point lies past the end of its facet.
-pub(super) const PAST: f64 = 1e-9;
-/// Excess |ξ| − 1 above which a pair at a joint has left it within a solve.
-const OFF_JOINT: f64 = 0.02;
-/// Excess |ξ| − 1 above which a closest point lies past a corner or the end of a side: where sides
-/// of equal length are pressed together, their ends bulge differently.
-pub(super) const PAST_SIDE: f64 = 1e-3;
-/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node
-/// of the other side meet: just where the node begins to face the side.
-pub(super) const NEAR_END: f64 = 0.5 * PAST_SIDE;
 
 impl Surface {
     /// The closest of the given facets that a node at the position `from` faces.
@@ -37,7 +25,7 @@ impl Surface {
         let mut closest: Option<Closest> = None;
         for &facet in facets {
             let side = self.facet(facet);
-            let Some(xi) = side.closest_point(y, from, REACH) else { continue };
+            let Some(xi) = side.closest_point(y, from, REACH_XI) else { continue };
             let gap = self.gap(facet, xi, from, y);
             let of_side = self.is_of_side(facet);
             // A node beside the rest of the boundary may still face the side.
@@ -46,7 +34,8 @@ impl Surface {
             }
             let distance = gap.abs() + (xi.abs() - 1.0).max(0.0) * self.length(facet, y);
             // The facets of the side come first: one that is as near as the rest is preferred.
-            if closest.is_none_or(|c| distance < if of_side { c.distance } else { (1.0 - PAST) * c.distance })
+            if closest
+                .is_none_or(|c| distance < if of_side { c.distance } else { (1.0 - ROUND_OFF) * c.distance })
             {
                 closest = Some(Closest { facet, xi, gap, distance });
             }
@@ -63,7 +52,7 @@ impl Surface {
         y: Places,
     ) -> Next {
         // A pair with both facets of a joint slides on either.
-        let past = if pair.joint.is_some() { OFF_JOINT } else { PAST };
+        let past = if pair.joint.is_some() { PAST_END } else { ROUND_OFF };
         if pair.xi.abs() <= 1.0 + past {
             return Next::Stay;
         }
@@ -77,7 +66,7 @@ impl Surface {
         if came_from == Some(neighbour) {
             return Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]);
         }
-        if let Some(xi) = self.facet(neighbour).closest_point(y, from, REACH) {
+        if let Some(xi) = self.facet(neighbour).closest_point(y, from, REACH_XI) {
             let inside = if forward { xi >= -1.0 } else { xi <= 1.0 };
             if inside {
                 return Next::HandOver(neighbour, [xi, 0.0]);
@@ -88,7 +77,7 @@ impl Surface {
             return Next::Concave(neighbour, [if forward { -1.0 } else { 1.0 }, 0.0]);
         }
         // In the vertex cone of a convex joint.
-        let bridged = pair.xi.abs() <= REACH && !self.faces_nothing(pair.facet, pair.xi, y);
+        let bridged = pair.xi.abs() <= REACH_XI && !self.faces_nothing(pair.facet, pair.xi, y);
         if bridged { Next::Stay } else { Next::Leave }
     }
 
@@ -101,12 +90,12 @@ impl Surface {
     /// Whether ξ lies past an end of a facet at which no blunt joint with another facet of the side
     /// follows.
     pub(super) fn faces_nothing(&self, facet: usize, xi: f64, y: Places) -> bool {
-        if xi.abs() < 1.0 - PAST {
+        if xi.abs() < 1.0 - ROUND_OFF {
             return false;
         }
         let neighbour = self.neighbour(facet, xi > 0.0);
         if neighbour.is_some_and(|neighbour| self.is_of_sibling(neighbour)) {
-            return !(-1.0 + PAST..=1.0 + PAST).contains(&xi);
+            return !(-1.0 + ROUND_OFF..=1.0 + ROUND_OFF).contains(&xi);
         }
         let is_continued = neighbour.is_some_and(|neighbour| self.is_mirror(neighbour));
         if xi.abs() <= 1.0 + PAST_SIDE || is_continued {

@@ -31,13 +31,8 @@ use std::ops::Range;
 
 use super::facets::Facets;
 use super::surface::Surface;
+use crate::constants::{FACING, FOLDED_BACK};
 use crate::places::Places;
-
-/// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet.
-const WINDOW: f64 = 80.0 * PI / 180.0;
-
-/// Cosine of the turn, 120°, from which on a joint may be the tip of a closed slit.
-const TIP: f64 = -0.5;
 
 /// The order of the facets of a body along the loops of its boundary, and its corners.
 #[derive(Clone, Debug)]
@@ -59,6 +54,12 @@ pub struct Folds {
     /// For each node from the smallest on, the places of the facets before and after it.
     around: Vec<[usize; 2]>,
 }
+
+/// Difference of angles that is round-off.
+const ALIKE: f64 = 1e-6;
+/// Share of a loop at which its order begins if nothing else decides: (1 − g)/2 with the golden
+/// ratio g = 0.618….
+const GENERIC: f64 = 0.190_983;
 
 /// Order of a node and a facet of one boundary along that boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,7 +178,7 @@ impl Folds {
         let total = turns.total[run];
         let ahead = middle(other) - middle(own);
         let on = ahead + if self.place[own] > self.place[other] { total } else { 0.0 };
-        [on, total - on].iter().any(|turn| (turn + PI).abs() < WINDOW)
+        [on, total - on].iter().any(|turn| (turn + PI).abs() < FOLDED_BACK)
     }
 
     /// Whether the body consists of several connected pieces.
@@ -213,7 +214,7 @@ impl Folds {
         let on = middle - leaving + if at < after { total } else { 0.0 };
         let back = arriving - middle + if at > before { total } else { 0.0 };
         let kink = total - on - back;
-        let meets = |turn: f64| (turn + 0.5 * kink + PI).abs() < WINDOW + 0.5 * kink.max(0.0);
+        let meets = |turn: f64| (turn + 0.5 * kink + PI).abs() < FOLDED_BACK + 0.5 * kink.max(0.0);
         meets(on) || meets(back)
     }
 }
@@ -230,7 +231,7 @@ fn nearest_to(other: f64, angle: f64) -> f64 {
 /// half a turn.
 fn joint(surface: &Surface, [facet, next]: [usize; 2], y: Places, before: f64) -> f64 {
     let kink = surface.kink(facet, next, y);
-    let turns_back = kink.cosine < TIP && surface.is_whole();
+    let turns_back = kink.cosine < FACING && surface.is_whole();
     let near = if turns_back { PI - surface.seen_from(surface.facet(next).nodes[0], y) } else { before };
     nearest_to(near, kink.sine.atan2(kink.cosine))
 }
@@ -268,7 +269,9 @@ impl Turns {
         }
     }
 
-    /// Index within a loop of the facet at which its order should begin.
+    /// Index within a loop of the facet at which its order should begin. Of equals, as on a circle,
+    /// it is one that no symmetry distinguishes: where the ends of the order lie opposite to a place
+    /// that meets them, nodes come later than the first facets and earlier than the last ones.
     fn best_start(&self, run: usize, places: Range<usize>) -> usize {
         let start = &self.start[places.clone()];
         let within = &self.within[places];
@@ -282,18 +285,18 @@ impl Turns {
         }
         let mut least = f64::INFINITY;
         let mut largest = f64::NEG_INFINITY;
-        let mut best = (0, f64::NEG_INFINITY);
+        let mut rooms = Vec::with_capacity(n);
         for k in 0..n {
             let arriving = if k == 0 { end(n - 1) - total } else { end(k - 1) };
             let ahead = on[k][0].min(least + total) - start[k];
             let behind = arriving - largest.max(on[k][1] - total);
-            // Of equals the first.
-            if ahead.min(behind) > best.1 + 1e-6 {
-                best = (k, ahead.min(behind));
-            }
+            rooms.push(ahead.min(behind));
             least = least.min(start[k]).min(end(k));
             largest = largest.max(start[k]).max(end(k));
         }
-        best.0
+        let best = rooms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let equals: Vec<usize> = (0..n).filter(|&k| rooms[k] >= best - ALIKE).collect();
+        let share = GENERIC * equals.len() as f64;
+        equals.get(share as usize).copied().unwrap_or(0)
     }
 }

@@ -4,12 +4,9 @@
 use std::collections::BTreeMap;
 
 use super::facets::OnFacet;
-use super::joint::AT_JOINT;
+use crate::constants::{AT_JOINT, ROUND_OFF};
 use crate::friction::Tangential;
 use crate::pair::{Pair, PairEvent, Pairing, in_order};
-
-/// Difference of depths, over the size of a facet, that is round-off.
-const SAME: f64 = 1e-9;
 
 /// The facet to which a pair belongs whose closest point is past the end of its facet.
 pub(super) enum Next {
@@ -132,7 +129,7 @@ impl<N: Fn(&Pair, Option<usize>) -> Next> Sliding<'_, N> {
             let size = size(to);
             let below = depth(pair.node, to, xi);
             let below_own = depth(pair.node, pair.facet, [pair.xi, pair.eta]);
-            below_own > below + SAME * size || is_past(pair) && below <= AT_JOINT * size
+            below_own > below + ROUND_OFF * size || is_past(pair) && below <= AT_JOINT * size
         };
         let Pairing { pairs, left, fresh, .. } = pairing;
         let starts = std::mem::replace(fresh, false);

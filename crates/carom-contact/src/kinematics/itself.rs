@@ -5,12 +5,12 @@
 use std::sync::Arc;
 
 use super::Combined;
-use super::facing::PAST;
 use super::folds::{Folds, Side};
 use super::joint::AtJoints;
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::reversed::NodesWithDepth;
 use super::surface::Surface;
+use crate::constants::ROUND_OFF;
 
 impl NodeToFacet {
     /// A side against itself: its nodes in the role of the later place, and in that of the earlier
@@ -50,6 +50,8 @@ impl NodeToFacet {
     /// pair with.
     pub(super) fn ends_at(&self, node: usize, facet: usize, xi: f64) -> bool {
         let next = || self.primary.neighbour(facet, xi > 0.0);
-        self.folds.is_some() && xi.abs() > 1.0 + PAST && next().is_some_and(|next| self.excludes(node, next))
+        self.folds.is_some()
+            && xi.abs() > 1.0 + ROUND_OFF
+            && next().is_some_and(|next| self.excludes(node, next))
     }
 }

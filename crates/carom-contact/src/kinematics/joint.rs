@@ -12,12 +12,9 @@
 //! facet follows from positions alone: it is the one furthest from whose end the node lies inside
 //! or, past the ends of all of them, the one whose end is nearest.
 
+use crate::constants::AT_JOINT;
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
-
-/// Distance of a closest point from a joint, over the size of the facet, up to which it lies there:
-/// above round-off, and far below what a node slides in a step.
-pub(super) const AT_JOINT: f64 = 1e-7;
 
 /// The pairs of a node over a blunt joint of facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

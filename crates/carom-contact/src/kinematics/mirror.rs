@@ -10,8 +10,7 @@ use std::collections::HashSet;
 use carom_algebra::Vector;
 use carom_solid::Bounds;
 
-/// Differences of a coordinate, relative to the size of a facet, up to which it lies in a plane.
-const FLAT: f64 = 1e-9;
+use crate::constants::ROUND_OFF;
 
 /// Continuation of the surface of a body where a facet begins that is no surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,10 +72,10 @@ pub fn is_mirror(
     let is_at_end = |axis: usize| {
         let at = y[dimension * nodes[0] + axis];
         let [below, above] = [at - bodies.low()[axis], bodies.high()[axis] - at];
-        below.min(above) <= FLAT * size
+        below.min(above) <= ROUND_OFF * size
     };
     let is_across = |axis: usize| {
-        let is_flat = extent(axis) <= FLAT * size;
+        let is_flat = extent(axis) <= ROUND_OFF * size;
         is_flat && is_at_end(axis) && nodes.iter().all(|&node| is_fixed(node, axis))
     };
     let is_held = |node: &usize| (0..dimension).all(|axis| is_fixed(*node, axis));

@@ -68,7 +68,9 @@ pub use tip_to_facet::TipToFacet;
 pub(crate) use way::amplification;
 
 use carom_algebra::{Mat, Threads};
+use carom_solid::shape::line_shape;
 
+use crate::constants::ON_FACET;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -83,9 +85,42 @@ pub struct NodalPressure {
     pub nominal: f64,
 }
 
-/// Excess |ξ| − 1 up to which a contact point lies on its facet: a node that slides along a joint
-/// has it within a second-order distance of its end.
-const ON_FACET: f64 = 1e-5;
+/// A point of a facet or an edge, between its nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct BetweenNodes<'a> {
+    /// Global numbers of the nodes.
+    pub nodes: &'a [usize],
+    /// Their shape functions at the point.
+    pub values: [f64; 4],
+}
+
+impl<'a> BetweenNodes<'a> {
+    /// A point ξ of a line.
+    pub(crate) fn on_line(nodes: &'a [usize], xi: f64) -> Self {
+        Self { nodes, values: line_shape(nodes.len(), xi.clamp(-1.0, 1.0)).values }
+    }
+
+    /// A positive quantity of the nodes at the point, Σ N² q / Σ N²: it lies between those of the
+    /// nodes, and is that of a node there.
+    pub fn mean(&self, of: impl Fn(usize) -> f64) -> f64 {
+        let mut sum = 0.0;
+        let mut weight = 0.0;
+        for (&node, value) in self.nodes.iter().zip(self.values) {
+            sum += value * value * of(node);
+            weight += value * value;
+        }
+        sum / weight
+    }
+
+    /// The point in a configuration of the nodes; `y`: flat over all nodes.
+    pub fn place(&self, y: &[f64], dimension: usize) -> Vec<f64> {
+        let at = |i: usize| {
+            let nodes = self.nodes.iter().zip(self.values);
+            nodes.map(|(&node, value)| value * y[node * dimension + i]).sum()
+        };
+        (0..dimension).map(at).collect()
+    }
+}
 
 /// A method to find pairs of two sides and to measure their gaps.
 pub trait Kinematics: std::fmt::Debug + Send + Sync {
@@ -130,6 +165,12 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
 
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
+
+    /// The point of the secondary side at which a row acts that is of none of its nodes: of a convex
+    /// part of an obstacle, and of an edge; none of other rows.
+    fn between_nodes(&self, _pair: &Pair) -> Option<BetweenNodes<'_>> {
+        None
+    }
 
     /// Rotation of a rigid primary between two positions; none of a deformable one, or of one that
     /// does not turn.

@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use carom_solid::FacetShape;
 
 use super::facets::{Facets, OnFacet};
-use super::facing::{NEAR_END, PAST_SIDE, REACH, Reached};
+use super::facing::Reached;
 use super::folds::{Folds, Side, Turns};
 use super::hand_over::{Held, Measured, Next, Sliding};
 use super::joint::{AtJoints, OnFacets};
@@ -28,15 +28,10 @@ use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
 use super::{Kinematics, watch_every_node, zero};
+use crate::constants::{HAND_BACK_XI, HAND_OVER_XI, NEAR_END, PAST_SIDE, REACH_XI};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
-
-/// |ξ| beyond which a pair is handed over to the next facet before Newton's method has converged.
-const HAND_OVER: f64 = 1.02;
-/// |ξ| beyond which a pair is handed back to the facet that it came from before Newton's method has
-/// converged.
-const HAND_BACK: f64 = 1.1;
 
 /// The gap that decides that a node has reached the primary side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -251,8 +246,8 @@ impl NodeToFacet {
             -self.gap(self.secondary[place], facet, xi, now) - self.slack(place)
         };
         let held = Held::several(&pairing.pairs);
-        let is_past = |pair: &Pair| pair.xi.abs() > HAND_OVER;
-        let is_near = |pair: &Pair| pair.xi.abs() <= REACH;
+        let is_past = |pair: &Pair| pair.xi.abs() > HAND_OVER_XI;
+        let is_near = |pair: &Pair| pair.xi.abs() <= REACH_XI;
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
         let size = |facet: usize| self.primary.length(facet, now);
         let measured = Measured { is_past: &is_past, is_near: &is_near, depth: &depth, size: &size };
@@ -465,7 +460,8 @@ impl Kinematics for NodeToFacet {
                 next => next,
             }
         };
-        let is_near = |pair: &Pair, came: bool| pair.xi.abs() <= if came { HAND_BACK } else { HAND_OVER };
+        let is_near =
+            |pair: &Pair, came: bool| pair.xi.abs() <= if came { HAND_BACK_XI } else { HAND_OVER_XI };
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
         sliding.update(pairing, is_near, events)
     }

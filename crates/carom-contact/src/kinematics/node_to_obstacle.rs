@@ -14,14 +14,14 @@ use std::collections::BTreeMap;
 use carom_algebra::{Mat, Vector};
 
 use super::carrier::{Carrier, Local};
-use super::facing::NEAR_END;
-use super::obstacle::{AtCorner, CORNER_COSINE, Near, Obstacle, ObstacleGap, Point, Through, Tip, dot};
+use super::obstacle::{AtCorner, Near, Obstacle, ObstacleGap, Point, Through, Tip, dot};
 use super::outward::{Outward, is_opposed};
 use super::passed::Passed;
 use super::reversed::NodesWithDepth;
 use super::tangents::tangents;
-use super::way::{SHARE, share};
+use super::way::share;
 use super::{Kinematics, watch_every_node};
+use crate::constants::{KINK, NEAR_END, SHALLOW};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -136,7 +136,7 @@ impl NodeToObstacle {
         let is_flat = here.bend == 0.0;
         let turns = |piece: &usize| {
             let there = self.shape.near(*piece, local.at);
-            there.is_some_and(|there| !is_flat || dot(here.normal, there.normal) < CORNER_COSINE)
+            there.is_some_and(|there| !is_flat || dot(here.normal, there.normal) < KINK)
         };
         let mut across = over.into_iter().filter(turns).peekable();
         across.peek()?;
@@ -231,7 +231,7 @@ impl NodeToObstacle {
         let is_inside = |piece: usize| self.shape.near(piece, at).is_some_and(|near| near.gap < 0.0);
         for pair in held.iter().filter(|pair| pair.active || is_inside(pair.facet)) {
             for wall in self.shape.walls(pair.facet, at) {
-                let turns = |other: &Pair| dot(normal(other.facet), normal(wall)) < CORNER_COSINE;
+                let turns = |other: &Pair| dot(normal(other.facet), normal(wall)) < KINK;
                 if held.iter().chain(&walls).all(turns) {
                     walls.push(Pair::open(pair.node, wall, 0.0));
                 }
@@ -383,7 +383,7 @@ impl Kinematics for NodeToObstacle {
             let node = self.secondary[place];
             let limit = |share: f64| self.slack(place) + share * length;
             let [from, to] = [before, now].map(|y| self.local(node, y).at);
-            let Through { depth, normals } = self.shape.deepest_between(from, to, limit(SHARE))?;
+            let Through { depth, normals } = self.shape.deepest_between(from, to, limit(SHALLOW))?;
             let limit = limit(share(normals, bounce));
             (depth > limit).then_some(Passed { what: "node", node, depth, limit })
         };

@@ -14,8 +14,8 @@
 
 use carom_algebra::Vector;
 
-/// Sine of the angle, 30°, by which −n may leave the cone of the nᵢ: joints are blunt up to it.
-pub(super) const BLUNT: f64 = 0.5;
+use crate::constants::{ASIDE, ASIDE_COSINE, FLUSH, OPPOSED};
+
 /// Most sweeps over the λᵢ.
 const SWEEPS: usize = 500;
 /// Share of the distance by which a sweep must shorten it to go on.
@@ -43,19 +43,6 @@ pub(super) fn presses<const D: usize>(normals: &[Vector<D>], n: Vector<D>, withi
     false
 }
 
-/// Distance of −n from the cone of the nᵢ above which no nᵢ opposes the facet: within 11° of
-/// perpendicular.
-const ASIDE: f64 = 0.98;
-/// Cosine of the same angle.
-const ALONG: f64 = 0.2;
-/// Cosine of the angle between two normals below which they oppose each other: within 45° of
-/// opposite.
-const OPPOSED: f64 = -0.7;
-/// Height of a node over a facet, relative to the length of the facet across the sharp edge, up to
-/// which the node is left to that other facet; and height of a corner over a facet of the node's
-/// body, relative to its length, up to which it lies at the facet.
-pub(super) const FLUSH: f64 = 0.02;
-
 /// Whether contact of a node at a height over a facet with the normal n is left to a facet across a
 /// sharp edge. `normals` are the nᵢ at the node; `beside` gives those facets, each with its normal
 /// and its length.
@@ -67,7 +54,7 @@ pub(super) fn is_left<const D: usize, I: Iterator<Item = (Vector<D>, f64)>>(
 ) -> bool {
     let most_opposed = |n: Vector<D>| normals.clone().map(|own| own.dot(&n)).fold(f64::INFINITY, f64::min);
     // An nᵢ that opposes the facet presses on it by itself.
-    most_opposed(n) > -ALONG
+    most_opposed(n) > -ASIDE_COSINE
         && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(other) < OPPOSED)
         && !presses(&normals.clone().collect::<Vec<_>>(), n, ASIDE)
 }

@@ -6,10 +6,8 @@ use super::Facets;
 use super::obstacle::{Point, dot};
 use super::space::Boundary;
 use super::surface::Surface;
+use crate::constants::PARALLEL;
 use crate::places::Places;
-
-/// Cosine of the angle, 10°, up to which a facet counts as parallel to an obstacle beside a corner.
-pub(super) const PARALLEL: f64 = 0.985;
 
 /// Boundary of the body to which secondary nodes belong.
 #[derive(Clone, Debug)]

@@ -10,7 +10,8 @@ use carom_solid::{Bounds, Tree};
 
 use super::drift::Drift;
 use super::facets::Facets;
-use super::way::{Allowed, Between, Met, SHARE, Seen, Way, amplification, through};
+use super::way::{Allowed, Between, Met, Seen, Way, amplification, through};
+use crate::constants::SHALLOW;
 
 /// A node, or an edge, that was inside a body between the start and the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +72,7 @@ impl<B> Paths<'_, B> {
         let of_nodes = most(nodes).sqrt();
         let lengths = (0..boundary.all()).map(|facet| boundary.shortest_edge(facet, ends[0]));
         let shortest = lengths.fold(f64::INFINITY, f64::min);
-        (of_body + of_nodes > 2.0 * SHARE * shortest).then_some(Motion { of_body, shortest })
+        (of_body + of_nodes > 2.0 * SHALLOW * shortest).then_some(Motion { of_body, shortest })
     }
 
     /// Whether a node moves far enough relative to a facet to enter and leave the body there.
@@ -81,7 +82,7 @@ impl<B> Paths<'_, B> {
     {
         let moved = |&other: &usize| relative::<D>(ends, node, other).sqrt();
         let most = self.boundary.nodes_of(facet).iter().map(moved).fold(0.0, f64::max);
-        most > 2.0 * SHARE * self.boundary.shortest_edge(facet, ends[0])
+        most > 2.0 * SHALLOW * self.boundary.shortest_edge(facet, ends[0])
     }
 
     /// The node that was deepest beyond its limit, if any. `crossing`: where a node first crosses a
@@ -110,7 +111,7 @@ impl<B> Paths<'_, B> {
             let fastest = amplification(boundary.shape()) * (of_body + moved);
             let slack = (self.allowed)(place);
             // What enters later, or leaves earlier, is not inside for long enough.
-            let until = 1.0 - (SHARE * shortest + slack) / fastest;
+            let until = 1.0 - (SHALLOW * shortest + slack) / fastest;
             if until <= 0.0 {
                 continue;
             }

@@ -30,11 +30,7 @@ use carom_algebra::Vector;
 
 use super::facets::{Facets, OnFacet};
 use super::space::cross;
-
-/// Sine of the angle, 30°, above which a facet rises in front of another one.
-const RISES: f64 = 0.5;
-/// Cosine of the angle, 10°, up to which two facets count as parallel.
-pub(super) const PARALLEL: f64 = 0.985;
+use crate::constants::{KINK_SINE, PARALLEL};
 
 /// Nodes of a side with the depth that each may have without contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,7 +128,7 @@ fn is_in_notch<const D: usize>(side: &impl Facets<D>, node: usize, normal: Vecto
     side.facets_at(node).iter().any(|&OnFacet { facet, .. }| {
         let height = |&other: &usize| offset::<D>(node, other, y).dot(&normal);
         let highest = side.nodes_of(facet).iter().map(height).fold(0.0, f64::max);
-        highest > RISES * side.length(facet, y)
+        highest > KINK_SINE * side.length(facet, y)
     })
 }
 

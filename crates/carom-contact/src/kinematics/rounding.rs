@@ -18,9 +18,8 @@ use carom_algebra::Vector;
 
 use super::cross;
 use super::facets::Facets;
+use crate::constants::KINK;
 
-/// Cosine of the kink, 30°, above which neighbouring facets belong to one smooth surface.
-const SMOOTH: f64 = 0.87;
 /// Square of the extent of the neighbours in one direction, relative to that in the other one, from
 /// which on the curvature in it is known.
 const KNOWN: f64 = 1e-8;
@@ -76,7 +75,7 @@ fn smooth_neighbours<const D: usize>(
     y: &[f64],
 ) -> impl Iterator<Item = usize> {
     let normal = side.normal(facet, [0.0; 2], y);
-    side.beside(facet).filter(move |&other| side.normal(other, [0.0; 2], y).dot(&normal) > SMOOTH)
+    side.beside(facet).filter(move |&other| side.normal(other, [0.0; 2], y).dot(&normal) > KINK)
 }
 
 fn curvature<const D: usize>(side: &impl Facets<D>, facet: usize, y: &[f64]) -> Curvature {

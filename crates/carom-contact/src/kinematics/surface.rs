@@ -11,10 +11,8 @@ use super::drift::Drift;
 use super::facets::Facets;
 use super::mirror::{Continuation, Continuations, contains, is_mirror, reflected};
 use super::projection::Facet;
+use crate::constants::{KINK, PATH_MARGIN};
 use crate::places::Places;
-
-/// Cosine of the kink between neighbouring facets that marks a corner: 30°.
-const CORNER_COSINE: f64 = 0.87;
 
 /// The facets of a side in the plane, all of one shape, and their neighbours. The rest of the
 /// boundary of the body may follow them, so that a node near the end of the side is told from one
@@ -179,18 +177,18 @@ impl Surface {
     pub(crate) fn is_corner(&self, facet: usize, next: usize, y: Places) -> bool {
         let kink = self.kink(facet, next, y);
         // With the body on the left, a convex joint turns left.
-        kink.sine > 0.0 && kink.cosine < CORNER_COSINE
+        kink.sine > 0.0 && kink.cosine < KINK
     }
 
     /// Whether the joint of a facet and the one that follows it is a concave corner.
     pub(crate) fn is_notch(&self, facet: usize, next: usize, y: Places) -> bool {
         let kink = self.kink(facet, next, y);
-        kink.sine < 0.0 && kink.cosine < CORNER_COSINE
+        kink.sine < 0.0 && kink.cosine < KINK
     }
 
     /// Whether the joint of a facet and the one that follows it is smooth, but for a small kink.
     pub(crate) fn is_blunt(&self, facet: usize, next: usize, y: Places) -> bool {
-        self.kink(facet, next, y).cosine > CORNER_COSINE
+        self.kink(facet, next, y).cosine > KINK
     }
 
     /// The facets next to a facet at a convex corner.
@@ -215,7 +213,7 @@ impl Surface {
         let mirrored = |tangent, along: Vector<2>| reflected(tangent, along * along.norm().recip());
         let is_convex = || {
             let size = here.norm() * there.norm();
-            here.dot(&there) < CORNER_COSINE * size && here[0] * there[1] > here[1] * there[0]
+            here.dot(&there) < KINK * size && here[0] * there[1] > here[1] * there[0]
         };
         let is_continued = |facet: usize| match self.continuation(facet) {
             Continuation::None => false,
@@ -369,6 +367,3 @@ impl Search {
         &self.found
     }
 }
-
-/// Margin around a node's path in the search for facets, relative to the path's size.
-const PATH_MARGIN: f64 = 0.1;

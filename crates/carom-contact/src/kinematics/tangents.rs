@@ -11,10 +11,7 @@
 use carom_algebra::Vector;
 
 use super::space::cross;
-
-/// Value of 1 + n₀·n, for the last normal n₀ and the present one n, below which new tangents are
-/// chosen.
-const TURNED: f64 = 0.1;
+use crate::constants::TANGENTS_TURNED;
 
 /// The unit tangents at a normal, turned from the last ones of the pair; chosen freely if those are
 /// zero.
@@ -22,7 +19,7 @@ pub(super) fn tangents(normal: Vector<3>, last: [[f64; 3]; 2]) -> [Vector<3>; 2]
     let [first, second] = last.map(Vector);
     let before = cross(first, second);
     let turn = 1.0 + before.dot(&normal);
-    let first = if before.norm() > 0.5 && turn > TURNED {
+    let first = if before.norm() > 0.5 && turn > TANGENTS_TURNED {
         first + (before + normal) * (-first.dot(&normal) / turn)
     } else {
         let axis = (1..3).fold(0, |least, i| if normal[i].abs() < normal[least].abs() { i } else { least });

@@ -27,25 +27,17 @@
 use carom_algebra::Vector;
 
 use super::carrier::{Carrier, Local};
-use super::facing::NEAR_END;
 use super::joint::OnFacets;
 use super::node_to_facet::{Detection, NodeToFacet};
 use super::node_to_obstacle::NodeToObstacle;
 use super::obstacle::{Point, Tip, dot};
-use super::outward::PARALLEL;
 use super::passed::Passed;
 use super::surface::Surface;
-use super::{Facets, Kinematics};
+use super::{BetweenNodes, Facets, Kinematics};
+use crate::constants::{FOLLOWS, NEAR_END, PARALLEL, SAME_NORMAL};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::places::Places;
 use crate::rows::Rows;
-
-/// Cosine of the angle, 3°, between two facets above which a part touches one of them: the rows of
-/// both would nearly be the same, and the gap differs by r (1 − cos 3°).
-const TURNED: f64 = 0.9986;
-/// Second derivative a of half the squared distance of a centre from a facet, over that from a
-/// straight one, below which the facet follows the part.
-const FOLLOWS: f64 = 0.5;
 
 impl Tip {
     /// Whether the part can lie between the nodes of a facet of this length.
@@ -227,7 +219,7 @@ impl TipToFacet {
             let Some(xi) = self.side.facet(facet).closest_point(places, center, 1.0) else { continue };
             let other = Pair::open(pair.node, facet, xi);
             let gap = self.centers.gap_of(&other, places);
-            let turns = gap.at.normal.dot(&own) < TURNED;
+            let turns = gap.at.normal.dot(&own) < SAME_NORMAL;
             let enters = turns && gap.distance > 0.0 && gap.distance + self.centers.slack(pair.node) < 0.0;
             if enters && !known.iter().chain(found.iter()).any(is_same) && self.acts(&other, y) {
                 found.push(other);
@@ -295,6 +287,10 @@ impl Kinematics for TipToFacet {
 
     fn facet_nodes(&self, _: &Pair) -> &[usize] {
         &[]
+    }
+
+    fn between_nodes(&self, pair: &Pair) -> Option<BetweenNodes<'_>> {
+        Some(BetweenNodes::on_line(self.side.nodes_of(pair.facet), pair.xi))
     }
 
     /// A part of an obstacle is held from the depth on that it has at the start.

@@ -8,16 +8,8 @@ use carom_algebra::Vector;
 
 use super::projection::Facet;
 use super::swept::{Crossings, Swept, SweptTest};
+use crate::constants::{ASTRAY, MEETS};
 use crate::places::Places;
-
-/// Excess of θ over [0, 1], and of |ξ| over 1, up to which a crossing counts, so that a node
-/// exactly on the surface is detected.
-const TOLERANCE: f64 = 1e-6;
-/// Distance between a node and a facet, relative to the length of the facet, at which they meet: a
-/// node that starts behind by round-off must be detected.
-const SEPARATION: f64 = 1e-6;
-/// Change of θ and ξ from the isolated crossing, above which Newton's method has found another one.
-const ASTRAY: f64 = 0.05;
 
 /// Crossing of the path of a node with that of a facet in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +41,7 @@ pub fn crossing(
         }
     }
     let [old, new] = &places;
-    let separation = SEPARATION * (old[1] - old[0]).norm();
+    let separation = MEETS * (old[1] - old[0]).norm();
     let path = [before.at(node), now.at(node)];
     match swept.first(path, [&old[..count], &new[..count]], Crossings::Inward, separation) {
         Swept::Clear => None,
@@ -92,7 +84,7 @@ fn polished(facet: Facet, before: Places, now: Places, node: usize, start: Cross
         }
         if d_theta.abs() <= 1e-13 && d_xi.abs() <= 1e-13 {
             let inwards = relative.dot(&tangent.turned_right()) < 0.0;
-            let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && xi.abs() <= 1.0 + TOLERANCE;
+            let valid = (-MEETS..=1.0 + MEETS).contains(&theta) && xi.abs() <= 1.0 + MEETS;
             return (inwards && valid).then_some(Crossing { theta, xi });
         }
     }

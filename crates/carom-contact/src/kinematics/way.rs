@@ -18,8 +18,7 @@
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
-/// Depth, relative to the length of a facet, that a node may have on its path.
-pub(super) const SHARE: f64 = 0.01;
+use crate::constants::SHALLOW;
 
 /// Accuracy of the largest depth, as a ratio to the allowed depth or to the largest one found.
 pub const KNOWN: f64 = 1.125;
@@ -101,7 +100,7 @@ pub(super) fn through(
         return None;
     }
     // It is on the boundary at one end at least.
-    way.allow(Allowed { share: SHARE, at_end: 0.0 });
+    way.allow(Allowed { share: SHALLOW, at_end: 0.0 });
     if fastest * (last - first) <= way.on(known.theta, known.facet, known.xi, 0.0).limit {
         return None;
     }
@@ -293,5 +292,5 @@ impl<'a, const D: usize> Between<'a, D> {
 /// Allowed depth, relative to the length of a facet, from the normals where a node enters and
 /// leaves: on the same side it has bounced, and may be as deep as at the end of a step.
 pub(super) fn share<const D: usize>([entered, left]: [Vector<D>; 2], bounce: f64) -> f64 {
-    if entered.dot(&left) > 0.0 { bounce.max(SHARE) } else { SHARE }
+    if entered.dot(&left) > 0.0 { bounce.max(SHALLOW) } else { SHALLOW }
 }

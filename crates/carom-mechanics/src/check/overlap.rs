@@ -6,12 +6,7 @@
 use crate::check::skins::{BodySkin, length, part_of, position, skin};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
-
-/// Distance outside of a body, relative to L, at which a node still counts as on its boundary.
-const ON: f64 = 1e-9;
-/// Distance outside of a body, relative to the facet there, at which a node behind a facet of the
-/// side still counts as inside: somewhat past its end, contact holds it.
-const BESIDE: f64 = 0.02;
+use carom_contact::constants::{FLUSH, ROUND_OFF};
 
 /// Depths at positions `y`, ≥ 0, beyond those that the contacts keep: for each contact one per node
 /// of its kinematics.
@@ -43,7 +38,7 @@ pub fn depths(model: &Model, y: &[f64]) -> Vec<Vec<f64>> {
             // Further behind it lies beside a wall.
             let beside = if below.is_some_and(|below| below <= beside) { beside } else { 0.0 };
             // In front of chords of a convex side, a node may be inside it.
-            let is_inside = distance <= ON * model.scale + BESIDE * beside + (-kept).max(0.0);
+            let is_inside = distance <= ROUND_OFF * model.scale + FLUSH * beside + (-kept).max(0.0);
             // Behind a joint of a hollow side no facet is faced.
             if is_inside { below.unwrap_or(-distance - kept).max(0.0) } else { 0.0 }
         };

@@ -5,6 +5,7 @@
 //! A node outside, at a distance d from a body, cannot be inside before the two have moved by d
 //! together. Until then it is not measured; no result depends on when it was.
 
+use carom_contact::constants::{DEEP, ROUND_OFF, SHALLOW};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use carom_contact::{InsideItself, Pair, Rows, Side};
@@ -36,9 +37,6 @@ pub struct Penetration {
     /// For each contact whose nodes all have gaps, the lengths of their facets by node.
     lengths: Vec<HashMap<usize, f64>>,
 }
-
-/// Depth over the length of a facet above which a contact is doubtful, whatever its law allows.
-const DEEP: f64 = 0.1;
 
 /// Penetration at a state.
 #[derive(Debug, Default)]
@@ -267,7 +265,7 @@ impl Penetration {
         let InsideItself { node, facet, depth } = skin.deepest_in_itself(y)?;
         let length = length(model, skin.facet_nodes(facet));
         // Chords do not tell smaller depths from none.
-        (depth > CHORDS * length).then_some((
+        (depth > SHALLOW * length).then_some((
             body,
             Inside { node, what: What::Node, depth, limit: contact.depths.others * length },
             length,
@@ -353,6 +351,15 @@ impl Penetration {
                     let node = contact.node(&pair);
                     let facet = contact.kinematics.facet_nodes(&pair);
                     paired.push((node, (pair.depth - rows.row(0).gap).max(0.0), of_facet(facet)));
+                }
+            }
+            // On springs, what presses between nodes is as deep as its row.
+            for pair in state.pairs[k].iter().filter(|pair| pair.active && contact.springs.is_some()) {
+                rows.clear();
+                if contact.kinematics.between_nodes(pair).is_some()
+                    && contact.kinematics.measure(&mut pair.clone(), y, rows).is_ok()
+                {
+                    found.depths.add(pair.depth - rows.row(0).gap, true);
                 }
             }
             // A node in a concave corner has two pairs: the deeper one counts.
@@ -459,11 +466,6 @@ pub fn penetration(model: &Model, state: &State) -> Depths {
     Penetration::of_contacts(model).measure(model, state).depths
 }
 
-/// Distance over the length of a facet that may be round-off, and says nothing about how far a node
-/// may still move.
-const ROUND_OFF: f64 = 1e-9;
-/// Depth over the length of a facet that a chord of it may feign.
-const CHORDS: f64 = 0.01;
 /// Square of the distance between two positions of a node.
 fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
     (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()

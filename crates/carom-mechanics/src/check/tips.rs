@@ -7,15 +7,12 @@
 //! chords between them are inside. Contacts in the plane hold the parts (`tip_to_facet.rs` of
 //! `carom-contact`); in space nothing does, and what is deep is warned of (`undeclared.rs`).
 
+use carom_contact::constants::DEEPEST;
 use carom_solid::Bounds;
 
 use crate::check::skins::{BodySkin, length, part_of, position, skin_nodes};
 use crate::check::watched::has_gaps;
 use crate::model::Model;
-
-/// Allowed depth, over the length of a facet, of all parts: chords of facets that lie on a circle
-/// are inside it, and curved facets bulge beside a sharp edge.
-const SHARE: f64 = 0.25;
 
 /// The convex parts of the obstacle of a contact.
 #[derive(Debug)]
@@ -121,7 +118,7 @@ impl Tips {
                 is_held,
                 depth,
                 counts,
-                limit: SHARE.max(contact.depths.others) * length,
+                limit: DEEPEST.max(contact.depths.others) * length,
                 length,
             });
         }

@@ -7,6 +7,7 @@
 //! node deepest inside it is as deep as other bodies may not be, at a place that no contact of the
 //! body with itself covers.
 
+use carom_contact::constants::SHALLOW;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use carom_contact::InsideItself;
@@ -18,10 +19,6 @@ use crate::check::tips::Tips;
 use crate::check::valid_cells::Checked;
 use crate::check::watched::{Watched, Way, has_gaps, kept_depths, lengths};
 use crate::model::{BodyInstance, Contact, Model};
-
-/// Allowed depth of bodies without a contact, over the length of a facet; with one it is that which
-/// the contact allows its own nodes.
-const UNDECLARED: f64 = 0.01;
 
 /// Finds it. A cache: its content affects no result.
 #[derive(Debug)]
@@ -60,7 +57,7 @@ impl Own {
         let facet = self.skin.facet_nodes(facet);
         let covers =
             |side: &HashSet<usize>| side.contains(&node) && facet.iter().any(|other| side.contains(other));
-        depth > UNDECLARED * length(model, facet) && !self.sides.iter().any(covers)
+        depth > SHALLOW * length(model, facet) && !self.sides.iter().any(covers)
     }
 }
 
@@ -135,7 +132,7 @@ impl Undeclared {
             }
         }
         for (contact, body, pierced) in self.between.pierced(model, y) {
-            if pierced.depth > pierced.counts.max(UNDECLARED * pierced.length) {
+            if pierced.depth > pierced.counts.max(SHALLOW * pierced.length) {
                 found.push(Overlap::Between { body, contact });
             }
         }
@@ -174,7 +171,7 @@ struct Covered {
 
 impl Default for Covered {
     fn default() -> Self {
-        Self { nodes: HashSet::new(), share: UNDECLARED, kept: 0.0 }
+        Self { nodes: HashSet::new(), share: SHALLOW, kept: 0.0 }
     }
 }
 

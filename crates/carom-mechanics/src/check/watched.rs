@@ -1,16 +1,13 @@
 //! The nodes whose penetration is measured, with the bodies that they must not enter; in space
 //! points of sharp edges too, because edges can cross between their nodes.
 
+use carom_contact::constants::BESIDE_KINK;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use carom_contact::{Boundary, Side};
 
 use crate::check::skins::{kinks, length, part_of, position, skin_facets, skin_nodes};
 use crate::model::{Contact, Model};
-
-/// Difference between a depth and that from the extension of a facet past a joint of up to 30°,
-/// 1 − cos 30°.
-const BESIDE: f64 = 0.13;
 
 /// Nodes of a side against a body.
 #[derive(Debug)]
@@ -123,7 +120,7 @@ impl Watched {
     /// points between them nor from the joint.
     pub(crate) fn limit(&self, entered: f64) -> f64 {
         let length = if self.constrained { entered } else { self.length.max(entered) };
-        self.share * length + BESIDE * self.kept.abs()
+        self.share * length + BESIDE_KINK * self.kept.abs()
     }
 }
 

@@ -1,9 +1,9 @@
 //! Contact in the equations of a stage: the row of each pair, the response of its interface, and
 //! its force, weighted as in the balance.
 
+use carom_contact::constants::ROUND_OFF;
 use carom_contact::{ContactError, Direction, Pair, Point, Rows};
 
-use crate::contact::update::INITIAL_GAP;
 use crate::rejected::Rejected;
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
@@ -60,12 +60,13 @@ impl Equations<'_> {
         let direction = contact.interface.direction();
         let gap = self.measure_pair(k, pair, evaluation)?;
         let start = pair.start.unwrap_or(f64::INFINITY);
-        let stiffness = self.augmentation(k, pair, evaluation.at.stiffer).map_or(0.0, |springs| springs[0]);
+        let of_augmented = || self.augmentation(k, pair, evaluation.at.stiffer).map(|springs| springs[0]);
+        let stiffness = contact.spring(pair).or_else(of_augmented).unwrap_or(0.0);
         let Pair { node, lambda, active, multiplier, .. } = *pair;
         // Before the first load step a spring that touches has no force, and holds a body on it.
         let begins = self.stage.is_static() && self.state.step == 0;
         let touches = active && begins && !contact.interface.is_constraint();
-        let is_round_off = (0.0..=INITIAL_GAP * self.model.scale).contains(&gap);
+        let is_round_off = (0.0..=ROUND_OFF * self.model.scale).contains(&gap);
         let pressed = if touches && is_round_off { -f64::MIN_POSITIVE } else { gap };
         let point = Point { node, gap: pressed, start, lambda, active, multiplier, stiffness };
         let answer = contact.interface.respond(&point);

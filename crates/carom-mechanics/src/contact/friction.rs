@@ -56,22 +56,25 @@ impl Model {
         self.contacts.iter().any(|contact| contact.friction.is_some())
     }
 
-    /// The laws of the secondary nodes of each contact at a time; none without friction.
+    /// The laws of the secondary nodes of each contact at a time; none without friction. `pairs`:
+    /// those of each contact.
     ///
     /// # Errors
     /// If a coefficient has no value.
-    pub(crate) fn friction_laws(&self, time: f64) -> Result<Vec<Vec<Law>>, NoValue> {
-        let of = |contact: &Contact| contact.friction.as_ref().map_or(Ok(Vec::new()), |f| f.laws(time));
-        self.contacts.iter().map(of).collect()
+    pub(crate) fn friction_laws(&self, time: f64, pairs: &[Vec<Pair>]) -> Result<Vec<Vec<Law>>, NoValue> {
+        let of = |(contact, pairs): (&Contact, &Vec<Pair>)| {
+            let Some(friction) = &contact.friction else { return Ok(Vec::new()) };
+            friction.laws(time, (&*contact.kinematics, pairs), (&self.reference, self.dimension))
+        };
+        self.contacts.iter().zip(pairs).map(of).collect()
     }
 
     /// Energy of the tangential springs of closed pairs.
     pub(crate) fn stick_energy<'a>(&self, pairs: impl Iterator<Item = &'a [Pair]>) -> f64 {
         let of = |(contact, pairs): (&Contact, &'a [Pair])| {
-            let springs = contact.friction.as_ref().map_or(&[][..], |friction| &friction.springs);
             let closed = pairs.iter().filter(|pair| pair.active);
             let square = |pair: &Pair| inner(pair.tangential.traction, pair.tangential.traction);
-            let energy = |pair: &Pair| Some(0.5 * square(pair) / springs.get(pair.node)?);
+            let energy = |pair: &Pair| Some(0.5 * square(pair) / contact.stick_spring(pair)?);
             closed.filter_map(energy).sum::<f64>()
         };
         self.contacts.iter().zip(pairs).map(of).sum()
@@ -134,7 +137,7 @@ impl Evaluation {
 impl Equations<'_> {
     /// Whether the friction of a contact is on springs, and the stiffness of a pair's.
     pub(crate) fn stick_spring(&self, contact: usize, pair: &Pair) -> Option<f64> {
-        self.model.contacts[contact].friction.as_ref()?.springs.get(pair.node).copied()
+        self.model.contacts[contact].stick_spring(pair)
     }
 
     /// Adds the rows H of a closed pair at y_½, with S as their gaps, and returns what counts in

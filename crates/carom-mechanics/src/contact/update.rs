@@ -1,6 +1,7 @@
 //! Contact status of an iterate: search and hand-over of pairs, active sets, and constraints that
 //! cannot be satisfied.
 
+use carom_contact::constants::ROUND_OFF;
 use std::collections::BTreeSet;
 
 use carom_contact::{
@@ -20,9 +21,6 @@ use crate::stage::equations::Equations;
 use crate::stage::evaluation::{Evaluation, Iterate};
 use crate::timings::timed;
 use crate::workspace::Workspace;
-
-/// Gap, as a fraction of L, of nodes in contact before the first load step.
-pub(super) const INITIAL_GAP: f64 = 1e-9;
 
 /// Traction over the cone that stands for a slip that a support enforces.
 const BEYOND: f64 = 2.0;
@@ -123,7 +121,7 @@ impl<'a> ContactUpdate<'a> {
         let Equations { model, stage, .. } = self.equations;
         // A spring that is compressed by round-off does not press.
         let presses = |(k, p): (usize, usize)| {
-            model.contacts[k].interface.is_constraint() || now.rows[k].row(p).gap < -INITIAL_GAP * model.scale
+            model.contacts[k].interface.is_constraint() || now.rows[k].row(p).gap < -ROUND_OFF * model.scale
         };
         if !stage.is_static() || model.unconstrained.is_empty() || now.pressing().any(presses) {
             return false;
@@ -131,7 +129,7 @@ impl<'a> ContactUpdate<'a> {
         let mut changed = false;
         for (k, contact) in model.contacts.iter().enumerate() {
             for (pair, row) in now.at.pairings[k].pairs.iter_mut().zip(now.rows[k].iter()) {
-                if contact.kinematics.nearest(pair, row.gap, &now.y) <= INITIAL_GAP * model.scale {
+                if contact.kinematics.nearest(pair, row.gap, &now.y) <= ROUND_OFF * model.scale {
                     (pair.active, changed) = (true, true);
                 }
             }

@@ -1,6 +1,8 @@
 //! A contact of two sides, of a side and a rigid obstacle, or of a side with itself.
 
-use carom_contact::{Direction, Interface, Kinematics, Pair};
+use std::collections::HashMap;
+
+use carom_contact::{BetweenNodes, Direction, Interface, Kinematics, Pair};
 use carom_solid::FacetShape;
 
 use super::friction::Friction;
@@ -36,6 +38,8 @@ pub struct Contact {
     pub depths: AllowedDepths,
     /// Friction.
     pub friction: Option<Friction>,
+    /// Springs of its penalty.
+    pub springs: Option<Springs>,
     /// Springs of its augmented Lagrangian.
     pub augmentation: Option<Augmentation>,
     /// Whether penetration by the predictor y + Δt v is prevented too.
@@ -53,6 +57,36 @@ pub struct Contact {
     pub restitution: f64,
 }
 
+/// The springs of a penalty, as multiples of the diagonal of the bodies' tangent in the reference
+/// configuration.
+pub struct Springs {
+    /// Normal and tangential multiple.
+    pub factors: [f64; 2],
+    /// The diagonal.
+    pub diagonal: OfRows,
+}
+
+/// A positive quantity of the rows of a contact.
+#[derive(Default)]
+pub struct OfRows {
+    /// Of each secondary node, by index, and of what follows the nodes.
+    pub of_rows: Vec<f64>,
+    /// Of the nodes of the secondary side, by their global numbers: a row that is of none of them
+    /// has the mean of those next to it.
+    pub of_nodes: HashMap<usize, f64>,
+}
+
+impl OfRows {
+    /// That of the row of a pair.
+    pub(crate) fn at(&self, kinematics: &dyn Kinematics, pair: &Pair) -> f64 {
+        let known = |point: &BetweenNodes| point.nodes.iter().all(|node| self.of_nodes.contains_key(node));
+        match kinematics.between_nodes(pair).filter(known) {
+            Some(point) => point.mean(|node| self.of_nodes[&node]),
+            None => self.of_rows[pair.node],
+        }
+    }
+}
+
 /// The springs of an augmented Lagrangian, as multiples of the diagonal of a step's tangent.
 pub struct Augmentation {
     /// Normal and tangential multiple.
@@ -65,6 +99,19 @@ impl Contact {
     /// The secondary node of a pair; an edge has the number of one of its nodes.
     pub(crate) fn node(&self, pair: &Pair) -> usize {
         self.kinematics.secondary()[pair.node]
+    }
+
+    /// Stiffness of the penalty spring of a pair; none of a constraint.
+    pub(crate) fn spring(&self, pair: &Pair) -> Option<f64> {
+        let springs = self.springs.as_ref()?;
+        Some(springs.factors[0] * springs.diagonal.at(&*self.kinematics, pair))
+    }
+
+    /// Stiffness of the tangential spring of a pair; none where friction is a constraint.
+    pub(crate) fn stick_spring(&self, pair: &Pair) -> Option<f64> {
+        let springs = self.springs.as_ref()?;
+        let rubs = self.friction.as_ref().is_some_and(|friction| pair.node < friction.places.len());
+        rubs.then(|| springs.factors[1] * springs.diagonal.at(&*self.kinematics, pair))
     }
 
     /// Whether a pair keeps out a single node beside a field of pressure.

@@ -1,6 +1,8 @@
 //! Friction of a contact: the law of each secondary node at a time, and its tangential spring.
 
-use carom_contact::Law;
+use std::collections::HashMap;
+
+use carom_contact::{Kinematics, Law, Pair};
 use carom_formula::Formula;
 
 use super::formulas::{NoValue, value};
@@ -20,8 +22,9 @@ pub struct Friction {
     pub places: Vec<Vec<f64>>,
     /// Largest traction of each secondary node; empty if it has none.
     pub limits: Vec<f64>,
-    /// Stiffness of the tangential spring of each secondary node; empty for constraints.
-    pub springs: Vec<f64>,
+    /// Largest traction of the nodes of the secondary side, by their global numbers, between which
+    /// the row of a part of an obstacle lies.
+    pub limits_of_nodes: HashMap<usize, f64>,
     /// Number of edges after these nodes, which have no friction.
     pub edges: usize,
 }
@@ -35,7 +38,7 @@ impl Friction {
             decay: 0.0,
             places: vec![Vec::new(); nodes],
             limits: Vec::new(),
-            springs: Vec::new(),
+            limits_of_nodes: HashMap::new(),
             edges: 0,
         }
     }
@@ -46,27 +49,46 @@ impl Friction {
         node < self.places.len() && self.limits.get(node) != Some(&0.0)
     }
 
-    /// The law of every secondary node at a time, and of the edges that follow them.
+    /// The law of every secondary node at a time, and of the edges that follow them. A part of an
+    /// obstacle has that of the point where its pair is, with the reference positions of all nodes.
     ///
     /// # Errors
     /// A coefficient that is negative or not finite.
-    pub fn laws(&self, time: f64) -> Result<Vec<Law>, NoValue> {
-        let law = |(node, place): (usize, &Vec<f64>)| {
-            let limit = self.limits.get(node).copied().unwrap_or(f64::INFINITY);
-            let Some((formula, label)) = &self.stick else {
-                return Ok(Law { stick: f64::INFINITY, slip: f64::INFINITY, decay: 0.0, limit });
-            };
-            let stick = value(formula, label, place, time)?;
-            if stick < -ROUND_OFF {
-                let formula = formula.text().to_owned();
-                let place = place.clone();
-                return Err(NoValue { what: label.clone(), formula, place, time, value: stick });
-            }
-            let stick = stick.max(0.0);
-            Ok(Law { stick, slip: self.slip.unwrap_or(stick).min(stick), decay: self.decay, limit })
-        };
+    pub(crate) fn laws(
+        &self,
+        time: f64,
+        (kinematics, pairs): (&dyn Kinematics, &[Pair]),
+        (reference, dimension): (&[f64], usize),
+    ) -> Result<Vec<Law>, NoValue> {
         let none = Law { stick: 0.0, slip: 0.0, decay: 0.0, limit: f64::INFINITY };
-        let of_edges = std::iter::repeat_n(Ok(none), self.edges);
-        self.places.iter().enumerate().map(law).chain(of_edges).collect()
+        let limit = |node: usize| self.limits.get(node).copied().unwrap_or(f64::INFINITY);
+        let of_nodes = self.places.iter().enumerate();
+        let mut laws: Vec<Law> =
+            of_nodes.map(|(node, place)| self.law(place, limit(node), time)).collect::<Result<_, _>>()?;
+        if kinematics.nodes() < self.places.len() {
+            for pair in pairs.iter().filter(|pair| pair.node < self.places.len()) {
+                let Some(point) = kinematics.between_nodes(pair) else { continue };
+                let of_node = |node| self.limits_of_nodes.get(&node).copied().unwrap_or(0.0);
+                let has_own = self.limits_of_nodes.is_empty() || limit(pair.node) == 0.0;
+                let limit = if has_own { limit(pair.node) } else { point.mean(of_node) };
+                laws[pair.node] = self.law(&point.place(reference, dimension), limit, time)?;
+            }
+        }
+        laws.extend(std::iter::repeat_n(none, self.edges));
+        Ok(laws)
+    }
+
+    fn law(&self, place: &[f64], limit: f64, time: f64) -> Result<Law, NoValue> {
+        let Some((formula, label)) = &self.stick else {
+            return Ok(Law { stick: f64::INFINITY, slip: f64::INFINITY, decay: 0.0, limit });
+        };
+        let stick = value(formula, label, place, time)?;
+        if stick < -ROUND_OFF {
+            let formula = formula.text().to_owned();
+            let place = place.to_vec();
+            return Err(NoValue { what: label.clone(), formula, place, time, value: stick });
+        }
+        let stick = stick.max(0.0);
+        Ok(Law { stick, slip: self.slip.unwrap_or(stick).min(stick), decay: self.decay, limit })
     }
 }

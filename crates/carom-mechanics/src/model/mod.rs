@@ -17,7 +17,7 @@ mod rigid;
 mod whole;
 
 pub use body_instance::{BodyInstance, bounds};
-pub use contact::{AllowedDepths, Augmentation, Contact};
+pub use contact::{AllowedDepths, Augmentation, Contact, OfRows, Springs};
 pub use formulas::{NoValue, value};
 pub use friction::Friction;
 pub use loads::{Amplitude, InBody, Load, Loads, LoadsAt, Weight};

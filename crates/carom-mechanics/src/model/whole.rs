@@ -66,6 +66,9 @@ pub struct Model {
     pub initial_position: Vec<f64>,
     /// Initial velocities, flat; zero where fixed.
     pub initial_velocity: Vec<f64>,
+    /// Dofs that a support stops at the start, with the initial velocities that the case gives
+    /// them.
+    pub stopped: Vec<(usize, f64)>,
     /// Whether a dof is constrained: fixed or prescribed.
     pub fixed: Vec<bool>,
     /// Unknown dofs, ascending: those that neither are constrained nor belong to a point.

@@ -59,7 +59,7 @@ impl<'a> Equations<'a> {
         let average = stage.average;
         let time = if average == 0.0 { to } else { (1.0 - average) * to + average * state.time };
         let is_mean = stage.internal == Internal::DiscreteGradient;
-        let laws = model.friction_laws(if is_mean { time } else { to })?;
+        let laws = model.friction_laws(if is_mean { time } else { to }, &state.pairs)?;
         let mut equations = Self {
             model,
             state,

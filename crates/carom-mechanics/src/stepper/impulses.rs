@@ -128,7 +128,7 @@ impl Impulses {
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut kinds = vec![Kind::Normal; places.len()];
         let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
-        let laws = model.friction_laws(state.time + 0.5 * dt)?;
+        let laws = model.friction_laws(state.time + 0.5 * dt, &state.pairs)?;
         let mut combination = Rows::new(model.dimension);
         for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
             let contact = &model.contacts[k];
@@ -148,7 +148,7 @@ impl Impulses {
                 restitution.push(0.0);
             }
         }
-        let dependent = dependent || model.dimension == 3 && is_dependent(model, rows.rows.iter());
+        let dependent = dependent || model.has_friction() && is_dependent(model, rows.rows.iter());
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
             work.system.mass_with(model, &Constraints::none(model.dimension))?;

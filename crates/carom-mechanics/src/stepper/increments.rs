@@ -73,7 +73,7 @@ impl Increments<'_> {
     ) -> Result<bool, Rejected> {
         let model = self.model;
         let tolerance = self.model.gap_tolerance;
-        let laws = model.friction_laws(self.state.time)?;
+        let laws = model.friction_laws(self.state.time, &self.state.pairs)?;
         scratch.places.clear();
         scratch.acting.clear();
         scratch.along.clear();
@@ -234,7 +234,7 @@ impl Increments<'_> {
             examined.clear();
             examined.extend(places.iter().map(named));
             *dependent = is_dependent(model, acting.iter().take(places.len()))
-                || model.dimension == 3 && is_dependent(model, acting.iter());
+                || model.has_friction() && is_dependent(model, acting.iter());
         }
         Ok(Cone { matrix, right, kinds, is_dependent: *dependent }.solve(impulses)?)
     }

@@ -140,7 +140,7 @@ impl Closed {
         let normals = Constraints::plain(model.dimension, rows);
         let mut slips = Rows::new(model.dimension);
         let mut laws = Vec::new();
-        let of_contacts = model.friction_laws(state.time)?;
+        let of_contacts = model.friction_laws(state.time, &state.pairs)?;
         for &(k, p) in &places {
             let contact = &model.contacts[k];
             let law = of_contacts[k].get(state.pairs[k][p].node).copied();

@@ -8,7 +8,7 @@ use carom_mechanics::linear::direct::Direct;
 use carom_mechanics::linear::iterative::Iterative;
 use carom_mechanics::linear::matrices::Matrices;
 use carom_mechanics::linear::preconditioner::Preconditioner;
-use carom_mechanics::model::{Friction, Load, Loads, LoadsAt, Model, Motion, Motions};
+use carom_mechanics::model::{Friction, Load, Loads, LoadsAt, Model, Motion, Motions, OfRows, Springs};
 use carom_mechanics::stage::equations::Equations;
 use carom_mechanics::stage::evaluation::{Iterate, Spare};
 use carom_mechanics::stage::linear_problem::LinearProblem;
@@ -350,10 +350,13 @@ fn the_whole_tangent_with_friction_in_space_is_the_derivative_of_the_residual() 
 fn the_whole_tangent_with_springs_in_space_is_the_derivative_of_the_residual() {
     let mut model = strike_in_space();
     let nodes = model.contacts[0].kinematics.secondary().len();
-    model.contacts[0].interface = Box::new(Penalty::new(vec![200.0; nodes]));
+    model.contacts[0].interface = Box::new(Penalty);
+    model.contacts[0].springs = Some(Springs {
+        factors: [200.0, 60.0],
+        diagonal: OfRows { of_rows: vec![1.0; nodes], ..OfRows::default() },
+    });
     let mut friction = Friction::coulomb(0.3, 64);
     (friction.slip, friction.decay) = (Some(0.2), 0.3);
-    friction.springs = vec![60.0; nodes];
     model.contacts[0].friction = Some(friction);
     let scheme = Scheme::chung_hulbert(0.6).unwrap();
     let mut state = touching(&model, 0.0, |dof, z| z - 0.015 + 1e-3 * wave(dof, 0.6));

@@ -11,7 +11,7 @@ use carom_contact::{
     Augmented, ConservingPenalty, ConservingUnilateral, Direction, Interface, Kinematics, NodeToObstacle,
     Obstacle, Penalty, Unilateral,
 };
-use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction};
+use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction, OfRows, Springs};
 
 use super::areas::{consistent_weights, has_edge};
 use super::between_sides::{Bodies, Which, longest, without};
@@ -85,7 +85,7 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         .chain(primary.filter(|_| !itself))
         .map(|s| (s.shape, s.facets.clone()))
         .collect();
-    let normal = match spec.enforcement {
+    let diagonal = match spec.enforcement {
         Enforcement::Multiplier => Vec::new(),
         _ => spread(&*kinematics, stiffnesses(kinematics.secondary(), parts)),
     };
@@ -109,17 +109,21 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
             }
         }
         friction.edges = kinematics.secondary().len() - rubbing.len();
-        if spec.enforcement == Enforcement::Penalty {
-            friction.springs = normal[..rubbing.len()].iter().map(|of| stick * of).collect();
-        }
     }
     Ok(Contact {
         name: spec.name.clone(),
-        interface: interface(spec, conserves, || normal.iter().map(|of| spec.stiffness * of).collect()),
+        interface: interface(spec, conserves),
         depths: allowed_depths(case, spec),
         friction,
+        springs: (spec.enforcement == Enforcement::Penalty).then(|| Springs {
+            factors: [spec.stiffness, stick],
+            diagonal: OfRows {
+                of_rows: diagonal.clone(),
+                of_nodes: of_nodes(&secondary.nodes, stiffnesses(&secondary.nodes, parts)),
+            },
+        }),
         augmentation: (spec.enforcement == Enforcement::Augmented)
-            .then(|| Augmentation { factors: [spec.stiffness, stick], stiffness: normal.clone() }),
+            .then_some(Augmentation { factors: [spec.stiffness, stick], stiffness: diagonal }),
         predictor: spec.law == Some(ContactLaw::Predictor),
         kinematics,
         // A mass that is thrown is a body; a prescribed obstacle is not.
@@ -163,8 +167,13 @@ fn kinematics(
     )
 }
 
-/// The law of the normal forces; `springs`: the stiffness of each node.
-fn interface(spec: &ContactSpec, conserves: bool, springs: impl Fn() -> Vec<f64>) -> Box<dyn Interface> {
+/// Values of nodes by their global numbers.
+fn of_nodes(nodes: &[usize], values: Vec<f64>) -> HashMap<usize, f64> {
+    nodes.iter().copied().zip(values).collect()
+}
+
+/// The law of the normal forces.
+fn interface(spec: &ContactSpec, conserves: bool) -> Box<dyn Interface> {
     // With the predictor law y_{n+1} − y_n is not Δt v_½, and no force conserves angular momentum.
     let conserving = conserves && spec.law == Some(ContactLaw::Position);
     match spec.enforcement {
@@ -172,8 +181,8 @@ fn interface(spec: &ContactSpec, conserves: bool, springs: impl Fn() -> Vec<f64>
         Enforcement::Multiplier => Box::new(Unilateral),
         Enforcement::Augmented if conserving => Box::new(Augmented::along(Direction::DiscreteGradient)),
         Enforcement::Augmented => Box::new(Augmented::default()),
-        Enforcement::Penalty if conserves => Box::new(ConservingPenalty::new(springs())),
-        Enforcement::Penalty => Box::new(Penalty::new(springs())),
+        Enforcement::Penalty if conserves => Box::new(ConservingPenalty),
+        Enforcement::Penalty => Box::new(Penalty),
     }
 }
 
@@ -238,21 +247,23 @@ fn friction(
     // Nodes of the primary side lie over areas that those of the secondary one have already: of the
     // two laws they have Coulomb's alone.
     let on_primary = if mu.is_some() { f64::INFINITY } else { 0.0 };
-    let limits = shear.map(|shear| {
+    let limits_at = |nodes: &[usize], shear: f64| -> Vec<f64> {
         let facets = std::iter::once((secondary.shape, &secondary.facets));
         let areas = consistent_weights(nodes, facets, reference, case.thickness);
         let limit = |(node, area): (&usize, &f64)| {
             if secondary.nodes.contains(node) { shear * area } else { on_primary }
         };
         nodes.iter().zip(&areas).map(limit).collect()
-    });
+    };
+    let limits = shear.map(|shear| limits_at(nodes, shear));
+    let limits_of_nodes = shear.map(|shear| of_nodes(&secondary.nodes, limits_at(&secondary.nodes, shear)));
     Ok(Some(Friction {
         stick: stick.map(|formula| (formula, format!("mu of contact \"{}\"", spec.name))),
         slip: *mu_dynamic,
         decay: decay.unwrap_or(f64::INFINITY),
         places: nodes.iter().map(|node| reference[node * d..(node + 1) * d].to_vec()).collect(),
         limits: limits.unwrap_or_default(),
-        springs: Vec::new(),
+        limits_of_nodes: limits_of_nodes.unwrap_or_default(),
         edges: 0,
     }))
 }

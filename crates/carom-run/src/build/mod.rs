@@ -64,8 +64,11 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
         placed(case, &parts, &obstacles, &mut problems);
     let Supported { mut fixed, mut supports } = supports::supported(case, &parts, &reference, &mut problems);
     let tying = Tying { case, parts: &parts, reference: &reference, ties: &ties };
-    for (velocity, _) in initial_velocity.iter_mut().zip(&fixed).filter(|(_, fixed)| **fixed) {
-        *velocity = 0.0;
+    let mut stopped = Vec::new();
+    for (dof, velocity) in initial_velocity.iter_mut().enumerate().filter(|(dof, _)| fixed[*dof]) {
+        if *velocity != 0.0 {
+            stopped.push((dof, std::mem::take(velocity)));
+        }
     }
     supports.extend(obstacles.iter().filter_map(obstacles::Moving::support));
     obstacles.iter().flat_map(obstacles::Moving::fixed).for_each(|dof| fixed[dof] = true);
@@ -115,6 +118,7 @@ pub(crate) fn build(case: &Case, materials: &Materials) -> Result<Model, Vec<Pro
             gap_tolerance: gap_tolerance(scale, initial_position.iter().copied().chain(of_obstacles)),
             initial_position,
             initial_velocity,
+            stopped,
             fixed,
             free,
             unknown,

@@ -56,7 +56,20 @@ pub(super) fn velocity_jump(case: &Case, model: &Model) -> Vec<Found> {
     found
 }
 
-/// The largest jump of a body that a support moves.
+/// A velocity that jumps at the start.
+struct Jump {
+    dof: usize,
+    from: f64,
+    to: f64,
+}
+
+impl Jump {
+    fn size(&self) -> f64 {
+        (self.to - self.from).abs()
+    }
+}
+
+/// The largest jump of a body that a support moves or holds.
 fn moved_at_once(
     case: &Case,
     model: &Model,
@@ -66,11 +79,18 @@ fn moved_at_once(
 ) -> Option<Found> {
     let d = model.dimension;
     let own = part.nodes().start * d..part.nodes().end * d;
-    let jump = |moved: &Prescribed| moved.motion[1] - model.initial_velocity[moved.dof];
-    let of_part = start.moved.iter().filter(|moved| own.contains(&moved.dof));
-    let largest = of_part.max_by(|a, b| jump(a).abs().total_cmp(&jump(b).abs()))?;
-    let size = jump(largest).abs();
-    if size <= ALIKE * largest.motion[1].abs() || part.is_massless() {
+    let of_support = |moved: &Prescribed| Jump {
+        dof: moved.dof,
+        from: model.initial_velocity[moved.dof],
+        to: moved.motion[1],
+    };
+    let stopped = model.stopped.iter().map(|&(dof, from)| Jump { dof, from, to: 0.0 });
+    let jumps = start.moved.iter().map(of_support).chain(stopped);
+    let of_part = jumps.filter(|jump| own.contains(&jump.dof));
+    let largest = of_part.max_by(|a, b| a.size().total_cmp(&b.size()))?;
+    let size = largest.size();
+    let fastest = start.velocity[own].iter().fold(largest.to.abs(), |most, v| most.max(v.abs()));
+    if size <= ALIKE * fastest || part.is_massless() {
         return None;
     }
     let units = case.labels();
@@ -83,8 +103,8 @@ fn moved_at_once(
     let what = format!(
         "a support moves it along {} with {} {velocity} from the start on, where its initial velocity is {} {velocity}: this jump of {} {velocity} starts a wave of stress ρc·{} = {} {}",
         ["x", "y", "z"][largest.dof % d],
-        short(largest.motion[1]),
-        short(model.initial_velocity[largest.dof]),
+        short(largest.to),
+        short(largest.from),
         short(size),
         short(size),
         short(stress),

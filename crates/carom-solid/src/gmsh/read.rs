@@ -133,11 +133,15 @@ fn physical_names(source: &mut Source) -> Result<Vec<Group>, MshError> {
         let mut groups = Vec::new();
         for _ in 0..count {
             let (place, line) = source.line("$PhysicalNames")?;
-            let mut parts = line.splitn(3, char::is_whitespace);
-            let mut number = || parts.next()?.parse::<i64>().ok();
-            let numbers = (number(), number());
-            let name = parts.next().and_then(|n| n.trim().strip_prefix('"')?.strip_suffix('"'));
-            let ((Some(dimension), Some(tag)), Some(name)) = (numbers, name) else {
+            let mut rest = line;
+            let mut number = || {
+                let (word, after) = rest.trim_start().split_once(char::is_whitespace)?;
+                rest = after;
+                word.parse::<i64>().ok()
+            };
+            let numbers = [number(), number()];
+            let name = rest.trim().strip_prefix('"').and_then(|name| name.strip_suffix('"'));
+            let ([Some(dimension), Some(tag)], Some(name)) = (numbers, name) else {
                 return Err(unexpected(place, "dimension, number and \"name\"", line));
             };
             groups.push(Group { dimension, tag, name: name.to_owned() });

@@ -16,12 +16,13 @@
 
 use carom_algebra::Vector;
 
+use crate::constants::MORTAR_BEYOND;
+use crate::constants::SHALLOW;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
 use crate::kinematics::surface::Surface;
 use crate::places::Places;
-use crate::skin::TOLD_BY_ANGLE;
 
 /// Points at which weighted gaps of mortar contact are measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -385,7 +386,7 @@ impl Opposites<'_> {
             let point = own.at(self.y, xi).position;
             let gap = self.surface.gap(facet, eta, point, self.y);
             let is_near = gap > -region.length.max(own_length);
-            let is_shallow = self.folds.is_none() || gap >= -TOLD_BY_ANGLE * region.length;
+            let is_shallow = self.folds.is_none() || gap >= -SHALLOW * region.length;
             (is_near && (is_shallow || self.surface.covers_point(own.nodes, point, self.y)))
                 .then_some(gap.abs())
         };
@@ -400,8 +401,8 @@ impl Opposites<'_> {
         let point = own.at(self.y, xi).position;
         let opposite = self.surface.facet(facet);
         // Far away, Newton's method may never be still.
-        let eta = opposite.closest_from(self.y, point, region.between(point), BEYOND);
-        let eta = eta.or_else(|| opposite.closest_point(self.y, point, BEYOND))?;
+        let eta = opposite.closest_from(self.y, point, region.between(point), MORTAR_BEYOND);
+        let eta = eta.or_else(|| opposite.closest_point(self.y, point, MORTAR_BEYOND))?;
         Some(Opposed { xi, weight, facet, eta })
     }
 }
@@ -410,7 +411,3 @@ impl Opposites<'_> {
 pub(super) fn meet(folds: &Folds, turns: &Turns, [own, other]: [usize; 2]) -> bool {
     folds.admits_facet(own, other) && folds.facets_face(turns, own, other)
 }
-
-/// |η| up to which a closest point is followed past the end of a facet: at a kink of 30°, a point
-/// as far away as the facet is long has its closest point 1 + 2 tan 15° from the middle.
-const BEYOND: f64 = 1.6;

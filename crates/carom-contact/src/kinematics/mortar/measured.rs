@@ -17,11 +17,9 @@ use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
 use super::sides::Mortar;
 use super::turned::{Own, Turned, faces};
+use crate::constants::MORTAR_COVERED;
 use crate::kinematics::projection::{Facet, FacetPoint};
 use crate::places::Places;
-
-/// Share of the area of a multiplier that must face the primary for a pressure of its own.
-const COVERED: f64 = 0.05;
 
 /// Jump of a unit normal that is round-off.
 const STRAIGHT: f64 = 1e-10;
@@ -149,7 +147,7 @@ impl Mortar {
         for (cover, &multiplier) in covers.iter_mut().zip(of_facet) {
             *cover = self.cover(&self.multipliers[multiplier], faced);
         }
-        let is_covered = |number: usize| covers[number] >= COVERED;
+        let is_covered = |number: usize| covers[number] >= MORTAR_COVERED;
         let all = 0..of_facet.len();
         for number in all.clone().filter(|&number| !is_covered(number)) {
             let nearest = all.clone().filter(|&other| is_covered(other));

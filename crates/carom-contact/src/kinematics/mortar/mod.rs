@@ -29,12 +29,10 @@ use self::weighted::Sample;
 use super::obstacle::Tip;
 use super::passed::Passed;
 use super::{Kinematics, NodalPressure};
+use crate::constants::ROUND_OFF;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
 use crate::rows::Rows;
-
-/// Share of forces that is round-off in their sum.
-const ROUND_OFF: f64 = 1e-9;
 
 impl Mortar {
     /// Share of the area of a multiplier that faces the primary in the reference configuration.

@@ -14,6 +14,7 @@
 
 use carom_solid::quadrature;
 
+use crate::constants::ROUND_OFF;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
 use crate::places::Places;
@@ -44,9 +45,6 @@ pub(super) struct Multiplier {
 
 /// Most polynomials on a facet.
 pub(super) const MOST: usize = 3;
-
-/// Component of a unit normal that counts as zero.
-const ALONG: f64 = 1e-9;
 
 /// Degree of the pressure on facets of a degree.
 pub(super) fn degree_of_pressure(of_facets: usize) -> usize {
@@ -127,7 +125,7 @@ pub(super) fn without_held(
         of.parts.iter().all(|part| {
             let end = if part.polynomial == 0 { -1.0 } else { 1.0 };
             let normal = side.facet(part.facet).at(y, end).normal;
-            (0..2).all(|i| fixed[2 * of.node + i] || normal.0[i].abs() <= ALONG)
+            (0..2).all(|i| fixed[2 * of.node + i] || normal.0[i].abs() <= ROUND_OFF)
         })
     };
     let held: Vec<bool> = all.iter().map(is_held).collect();

@@ -7,11 +7,9 @@ use carom_algebra::Vector;
 
 use super::opposite::Opposite;
 use super::sides::Mortar;
+use crate::constants::ROUND_OFF;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
-
-/// Distance from a plane, relative to the size of the model, and cosine that count as zero.
-const FLAT: f64 = 1e-9;
 
 /// The end of a side in a plane of symmetry, with a normal of the plane.
 struct EndInPlane {
@@ -53,8 +51,8 @@ impl Mortar {
                 let other = ends.find(|other| {
                     let apart = other.place - end.place;
                     let size = apart.norm().max(end.place.norm());
-                    let is_parallel = 1.0 - other.normal.dot(&end.normal).abs() <= FLAT;
-                    is_parallel && apart.dot(&end.normal).abs() <= FLAT * size
+                    let is_parallel = 1.0 - other.normal.dot(&end.normal).abs() <= ROUND_OFF;
+                    is_parallel && apart.dot(&end.normal).abs() <= ROUND_OFF * size
                 })?;
                 Some(vec![end.node, other.node])
             }
@@ -63,7 +61,7 @@ impl Mortar {
                 let [along, across, _] = obstacle.gap_of_point([x, y, 0.0], &self.reference)?.direction();
                 let cosine = along * end.normal.0[0] + across * end.normal.0[1];
                 // An obstacle that is carried may move across the plane.
-                let is_symmetric = obstacle.carriers().is_empty() && cosine.abs() <= FLAT;
+                let is_symmetric = obstacle.carriers().is_empty() && cosine.abs() <= ROUND_OFF;
                 is_symmetric.then(|| vec![end.node])
             }
         }

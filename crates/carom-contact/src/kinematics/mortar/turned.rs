@@ -19,11 +19,7 @@
 use carom_algebra::Vector;
 
 use super::opposite::PointGap;
-
-/// Cosines of the angles from the opposite direction up to which a point faces the primary, and
-/// beyond which it does not: 60° and 75°. Where surfaces meet at a larger angle, one of them ends
-/// in a corner, which has a row of its own.
-const FACES: [f64; 2] = [0.5, 0.258_819_045_102_520_74];
+use crate::constants::MORTAR_FACES;
 
 /// Most vectors on which a gap and its weight depend: the point, four nodes opposite, and the
 /// tangent.
@@ -31,7 +27,7 @@ pub(super) const MOST: usize = 6;
 
 /// Weight φ of a cosine, with its first two derivatives.
 fn weight(cosine: f64) -> [f64; 3] {
-    let [fully, hardly] = FACES;
+    let [fully, hardly] = MORTAR_FACES;
     let rate = (fully - hardly).recip();
     let x = ((cosine - hardly) * rate).clamp(0.0, 1.0);
     let inner = if x > 0.0 && x < 1.0 { 1.0 } else { 0.0 };

@@ -19,13 +19,10 @@ use std::sync::Arc;
 
 use carom_solid::{Bounds, Tree, Triangles};
 
-use super::corner::{AtCorner, CORNER_COSINE};
+use super::corner::AtCorner;
 use super::near::{Entry, Near, Point, Tip, around, cross, distance, dot, minus};
+use crate::constants::{KINK, ROUND_OFF};
 use crate::kinematics::space::Feature;
-
-/// Negative barycentric coordinate, in absolute value, from which on a point lies beyond an edge of
-/// a face.
-const BEYOND: f64 = 1e-9;
 
 /// A rigid triangulated surface: triangles with their normals and a hierarchy of bounding boxes.
 #[derive(Clone, Debug)]
@@ -114,7 +111,7 @@ impl Faceted {
         for (face, edge) in (0..surface.faces()).flat_map(|face| [0, 1, 2].map(|edge| (face, edge))) {
             let is_sharp = surface.triangles.across(face, edge).is_some_and(|next| {
                 let turn = dot(surface.normals[face], surface.normals[next]);
-                face < next && turn < CORNER_COSINE && surface.is_convex(face, edge)
+                face < next && turn < KINK && surface.is_convex(face, edge)
             });
             if !is_sharp {
                 continue;
@@ -192,8 +189,9 @@ impl Faceted {
         let surface = &*self.0;
         let away = surface.closest(face, at).1;
         let is_wall = |&wall: &usize| {
-            let is_near =
-                || surface.beyond(wall, at).is_none() || surface.closest(wall, at).1 <= (1.0 + BEYOND) * away;
+            let is_near = || {
+                surface.beyond(wall, at).is_none() || surface.closest(wall, at).1 <= (1.0 + ROUND_OFF) * away
+            };
             let rises = || surface.rises(face, wall) && surface.rises(wall, face);
             surface.height(wall, at) < 0.0 && is_near() && rises()
         };
@@ -205,7 +203,7 @@ impl Faceted {
     /// face.
     pub(in super::super) fn at_corner(&self, face: usize, at: Point) -> AtCorner {
         let surface = &*self.0;
-        let is_blunt = |next: usize| dot(surface.normals[face], surface.normals[next]) >= CORNER_COSINE;
+        let is_blunt = |next: usize| dot(surface.normals[face], surface.normals[next]) >= KINK;
         for edge in 0..3 {
             // In a blunt groove the deeper wall constrains it; in a sharp one both do (`walls`).
             if let Some(next) = surface.triangles.across(face, edge)
@@ -222,7 +220,7 @@ impl Faceted {
         while let Some(edge) = surface.beyond(here, at) {
             let Some(next) = surface.triangles.across(here, edge) else { return AtCorner::Leaves };
             let turn = dot(surface.normals[here], surface.normals[next]);
-            if turn < CORNER_COSINE {
+            if turn < KINK {
                 if surface.is_convex(here, edge) {
                     return AtCorner::Leaves;
                 }
@@ -326,7 +324,7 @@ impl Surface {
         };
         let shares = [0, 1, 2].map(share);
         let least = (1..3).fold(0, |least, edge| if shares[edge] < shares[least] { edge } else { least });
-        (shares[least] < -BEYOND).then_some(least)
+        (shares[least] < -ROUND_OFF).then_some(least)
     }
 
     /// The face that a point behind an edge or a vertex sees most directly, of those that meet

@@ -19,7 +19,7 @@ mod near;
 mod path;
 mod polyline;
 
-pub(super) use corner::{AtCorner, CORNER_COSINE};
+pub(super) use corner::AtCorner;
 pub use faceted::Faceted;
 pub(super) use gap::ObstacleGap;
 use near::Entry;

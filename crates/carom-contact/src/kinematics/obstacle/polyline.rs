@@ -12,8 +12,9 @@
 //!
 //! The first and last segment of an open chain continue to infinity.
 
-use super::corner::{AtCorner, CORNER_COSINE};
+use super::corner::AtCorner;
 use super::near::{Entry, Near, Point, Tip, around, distance};
+use crate::constants::KINK;
 
 /// A piece of a polyline.
 #[derive(Clone, Copy, Debug)]
@@ -126,7 +127,7 @@ impl Polyline {
             Piece::Corner { center, radius, side, normals } if *side > 0.0 => {
                 let [first, last] = *normals;
                 let cosine = dot(first, last);
-                let is_blunt = cosine >= CORNER_COSINE;
+                let is_blunt = cosine >= KINK;
                 // An arc through the middles of the segments has the chord tan(φ/2) of its radius.
                 let tangent = cross(first, last).abs() / (1.0 + cosine);
                 let arc = if is_blunt { 0.5 * self.shorter_beside(piece) / tangent } else { 0.0 };
@@ -284,7 +285,7 @@ impl Polyline {
             let Piece::Corner { side, .. } = self.pieces[corner] else { continue };
             let Piece::Segment { tangent: other, .. } = self.pieces[next] else { continue };
             let past = self.beyond(piece, at) == Some(corner);
-            let blunt = dot(tangent, other) >= CORNER_COSINE;
+            let blunt = dot(tangent, other) >= KINK;
             if side < 0.0 {
                 // In a dent the deeper wall constrains it; in a concave corner both do (`walls`).
                 if blunt && self.gap(next, at) < self.gap(piece, at) && self.faces(next, at) {

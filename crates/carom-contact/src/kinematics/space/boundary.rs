@@ -12,14 +12,10 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape};
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
+use crate::constants::{CANCELS, KINK};
 use crate::kinematics::mirror::{Continuation, Continuations, contains, is_mirror, reflected};
 use crate::kinematics::{Depth, Facets, OnFacet};
 
-/// Cosine of the kink between neighbouring facets that marks a sharp edge: 30°.
-pub(super) const SHARP: f64 = 0.87;
-/// Length of a sum of unit normals, or of normals weighted with angles, below which they cancel, as
-/// at the tip of a slit.
-const FOLDED: f64 = 1e-6;
 /// Number of pieces into which points between its ends divide a sharp edge.
 const PIECES: usize = 8;
 /// Contact holds every second of these points.
@@ -296,7 +292,7 @@ impl Boundary {
     /// they meet.
     pub(super) fn is_smooth(&self, facet: usize, other: usize, y: &[f64]) -> bool {
         let [here, there] = self.normals_where_met(facet, other, y);
-        here.dot(&there) > SHARP
+        here.dot(&there) > KINK
     }
 
     /// Normals of two facets where they meet: in the middle of their common edge, or at the corner.
@@ -335,7 +331,7 @@ impl Boundary {
         let there = patch.at(y, patch.along(neighbour.edge, 1.0 - s)).normal;
         let is_convex = || {
             let [start, end] = [0.0, 1.0].map(|s| own.at(y, own.along(edge, s)).position);
-            here.dot(&there) < SHARP && cross(here, there).dot(&(end - start)) > 0.0
+            here.dot(&there) < KINK && cross(here, there).dot(&(end - start)) > 0.0
         };
         let is_continued = |facet: usize| match self.continuation(facet) {
             Continuation::None => false,
@@ -361,7 +357,7 @@ impl Boundary {
         let nodes = self.patch(facet).nodes;
         let along = place(y, nodes[(edge + 1) % self.shape.corners()]) - place(y, nodes[edge]);
         // Counter-clockwise seen from outside: at a convex edge the normals turn about it.
-        here.dot(&there) < SHARP && cross(here, there).dot(&along) > 0.0
+        here.dot(&there) < KINK && cross(here, there).dot(&along) > 0.0
     }
 
     /// The facets that share a corner with a facet and bend away from it there by more than 30°.
@@ -387,7 +383,7 @@ impl Boundary {
                 ends.iter().for_each(|&node| directions.entry(node).or_default().push(along));
             }
         }
-        let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < SHARP);
+        let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < KINK);
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
     }
 
@@ -464,7 +460,7 @@ impl Boundary {
         let Offset { vector, normal } = self.offset(facet, nearest, point, y);
         let size = normal.norm();
         // Where two normals are opposite, none points outwards.
-        let height = if size > FOLDED { vector.dot(&normal) / size } else { 0.0 };
+        let height = if size > CANCELS { vector.dot(&normal) / size } else { 0.0 };
         Height { distance: nearest.distance, height }
     }
 

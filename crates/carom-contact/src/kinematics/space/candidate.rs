@@ -4,21 +4,16 @@
 use carom_algebra::Vector;
 
 use super::crossing::crossing;
-use super::node_to_patch::{NEAR_END, NodeToPatch, PAST, REACH};
+use super::node_to_patch::NodeToPatch;
 use super::patch::place;
-use super::paths::{NOISE, Paths};
-use crate::kinematics::candidate::AROUND;
-use crate::kinematics::opposed::{BLUNT, FLUSH, presses};
+use super::paths::Paths;
+use crate::constants::{
+    DEEP, EXTENDED, FLUSH, KINK_SINE, NEAR_END_SPACE, PARALLEL_SINE, REACHED_TOGETHER, ROUND_OFF,
+};
+use crate::kinematics::opposed::presses;
 use crate::kinematics::way::Met;
 use crate::kinematics::{Facets, Kinematics, OnFacet, SpaceHit, SweptPatch};
 use crate::pair::Pair;
-
-/// Distance behind a facet at the start of a step, relative to the length of the facet, beyond
-/// which a node has not crossed it.
-const BEHIND: f64 = 0.1;
-/// Difference in θ below which facets are reached together: where they meet, and a path lies in the
-/// neighbouring side.
-const TOGETHER: f64 = 1e-4;
 
 /// The closest facet in space that a node faces.
 #[derive(Clone, Copy)]
@@ -54,7 +49,7 @@ impl NodeToPatch {
             }
         }
         match first {
-            [Some(other), Some(side)] if other.theta < side.theta - TOGETHER => first[0],
+            [Some(other), Some(side)] if other.theta < side.theta - REACHED_TOGETHER => first[0],
             [other, side] => side.or(other),
         }
     }
@@ -65,19 +60,19 @@ impl NodeToPatch {
         let mut closest: Option<Closest> = None;
         for &facet in near {
             let patch = self.primary.patch(facet);
-            let Some(xi) = patch.closest_point(now, end, REACH) else { continue };
+            let Some(xi) = patch.closest_point(now, end, EXTENDED) else { continue };
             let gap = self.gap(facet, xi, end, now);
             let of_side = self.is_met(node, facet, paths);
             let length = patch.length(now);
             let beyond = patch.furthest(xi).max(0.0);
-            let is_other = !of_side && (gap >= -NOISE * length || beyond > 0.0);
+            let is_other = !of_side && (gap >= -ROUND_OFF * length || beyond > 0.0);
             let is_past = || self.faces_nothing(facet, xi, now) || self.ends_at(node, facet, xi, now);
             if is_other || of_side && is_past() {
                 continue;
             }
             let distance = gap.abs() + beyond * length;
             let least = closest.map_or(f64::INFINITY, |closest| closest.distance);
-            if distance < if of_side { least } else { (1.0 - PAST) * least } {
+            if distance < if of_side { least } else { (1.0 - ROUND_OFF) * least } {
                 closest = Some(Closest { facet, xi, gap, distance });
             }
         }
@@ -102,8 +97,8 @@ impl NodeToPatch {
         let is_inside = |OnFacet { facet, .. }| {
             let patch = self.primary.patch(facet);
             let start = place(before, node);
-            let xi = patch.closest_point(before, start, REACH);
-            xi.is_some_and(|xi| self.gap(facet, xi, start, before) < -NOISE * patch.length(before))
+            let xi = patch.closest_point(before, start, EXTENDED);
+            xi.is_some_and(|xi| self.gap(facet, xi, start, before) < -ROUND_OFF * patch.length(before))
         };
         let is_left = |at: OnFacet<[f64; 2]>| {
             self.is_left_to_edge(node, at, before) && (!is_inside(at) || self.is_left_to_edge(node, at, now))
@@ -131,7 +126,7 @@ impl NodeToPatch {
         let normals = own.normals_at(node, y);
         // The normal where the node meets the facet: in the middle of a dented one it differs.
         let normal = patch.at(y, xi).normal;
-        if presses(&normals, normal, AROUND) {
+        if presses(&normals, normal, PARALLEL_SINE) {
             return false;
         }
         let meets = |point: Vector<3>| {
@@ -141,17 +136,17 @@ impl NodeToPatch {
                     let at = patch.seen_from(point, y, xi);
                     at.position.dot(&at.normal).abs()
                 };
-                let xi = patch.closest_point(y, point, NEAR_END);
+                let xi = patch.closest_point(y, point, NEAR_END_SPACE);
                 xi.is_some_and(|xi| gap(xi) <= FLUSH * patch.length(y))
             })
         };
-        let is_far = !presses(&normals, normal, BLUNT);
+        let is_far = !presses(&normals, normal, KINK_SINE);
         let here = place(y, node);
         sharp.any(|(edge, beyond)| {
             let (nodes, count) = self.primary.shape().edge(edge);
             let mut points = nodes.into_iter().take(count).map(|k| place(y, patch.nodes[k]));
             let nearest = || patch.at(y, patch.along(edge, patch.nearest_on_edge(y, here, edge))).position;
-            (is_far || beyond > PAST) && points.any(meets) && meets(nearest())
+            (is_far || beyond > ROUND_OFF) && points.any(meets) && meets(nearest())
         })
     }
 
@@ -182,7 +177,7 @@ impl NodeToPatch {
         }
         let first = self.first(swept, near, paths, node, before, now);
         let faced = |facet: usize| {
-            let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
+            let xi = self.primary.patch(facet).closest_point(now, end, EXTENDED)?;
             (!self.faces_nothing(facet, xi, now) && !self.ends_at(node, facet, xi, now)).then_some(xi)
         };
         let entered = first.filter(|first| is_met(first.facet));
@@ -203,11 +198,11 @@ impl NodeToPatch {
         let of_side = closest.filter(|closest| is_met(closest.facet));
         let Some(Closest { facet, xi, .. }) = of_side else { return beside() };
         let patch = self.primary.patch(facet);
-        let limit = slack + BEHIND * patch.length(before);
-        let behind = match patch.closest_point(before, start, REACH) {
+        let limit = slack + DEEP * patch.length(before);
+        let behind = match patch.closest_point(before, start, EXTENDED) {
             // Past a sharp edge there is no body that it could have entered unseen.
-            Some(xi) if self.is_past_end(facet, xi, PAST, before) => {
-                self.gap(facet, xi, start, before) < -slack - NOISE * patch.length(before)
+            Some(xi) if self.is_past_end(facet, xi, ROUND_OFF, before) => {
+                self.gap(facet, xi, start, before) < -slack - ROUND_OFF * patch.length(before)
             }
             Some(xi) => self.gap(facet, xi, start, before) < -limit,
             // Of its own boundary a node is beside most facets that it may meet, or behind them.
@@ -238,7 +233,7 @@ impl NodeToPatch {
         self.retain_pressed(node, before, paths, near);
         let Met { facet, .. } = self.first(swept, near, paths, node, before, now)?;
         let end = place(now, node);
-        let xi = self.primary.patch(facet).closest_point(now, end, REACH)?;
+        let xi = self.primary.patch(facet).closest_point(now, end, EXTENDED)?;
         let enters = self.is_met(node, facet, paths)
             && !self.faces_nothing(facet, xi, now)
             && !self.ends_at(node, facet, xi, now)
@@ -262,12 +257,12 @@ impl NodeToPatch {
         let [start, end] = [before, now].map(|y| place(y, node));
         near.iter().filter(|&&facet| self.is_met(node, facet, paths)).find_map(|&facet| {
             let patch = self.primary.patch(facet);
-            let xi = patch.closest_point(now, end, REACH)?;
-            let from = patch.closest_point(before, start, REACH)?;
-            let past = NEAR_END * patch.length(before);
+            let xi = patch.closest_point(now, end, EXTENDED)?;
+            let from = patch.closest_point(before, start, EXTENDED)?;
+            let past = NEAR_END_SPACE * patch.length(before);
             let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
-                && self.gap(facet, from, start, before) + slack >= -AROUND * past;
+                && self.gap(facet, from, start, before) + slack >= -PARALLEL_SINE * past;
             enters.then_some(OnFacet { facet, xi })
         })
     }

@@ -14,10 +14,8 @@ use carom_algebra::Vector;
 use super::boundary::Boundary;
 use super::closed_surface::ClosedSurface;
 use super::patch::place;
+use crate::constants::SURE;
 use crate::kinematics::Facets;
-
-/// Share of the depth up to which motion decides; round-off is far below the rest.
-const SURE: f64 = 0.99;
 
 /// Points, each a combination of nodes, and the surface of a body that they may enter by a depth.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! Creases of the primary: concave edges, and the points where several of them meet. The nearest
 //! point of a node below one is on an edge, and its own facet is not the only one that it enters.
 
-use super::node_to_patch::{NodeToPatch, PAST, REACH};
+use super::node_to_patch::NodeToPatch;
 use super::patch::place;
-use super::paths::NOISE;
+use crate::constants::{EXTENDED, ROUND_OFF};
 use crate::kinematics::{Facets, OnFacet};
 use crate::pair::Pair;
 
@@ -19,20 +19,20 @@ impl NodeToPatch {
         let beyond = patch.beyond([pair.xi, pair.eta]);
         let is_past = |facet: usize| {
             let edge = (0..patch.corners()).find(|&edge| self.primary.across(own, edge) == Some(facet));
-            edge.is_none_or(|edge| beyond[edge] > PAST)
+            edge.is_none_or(|edge| beyond[edge] > ROUND_OFF)
         };
         let from = place(y, node);
         if self.primary.depth(own, from, y).distance >= 0.0 {
             return None;
         }
-        let mut least = -NOISE * self.primary.patch(own).length(y);
+        let mut least = -ROUND_OFF * self.primary.patch(own).length(y);
         let mut deepest = None;
         let is_met = |&facet: &usize| {
             self.primary.is_of_side(facet) && is_past(facet) && self.may_take(node, facet, y)
         };
         for facet in self.primary.ring(own).iter().copied().filter(is_met) {
             let patch = self.primary.patch(facet);
-            let Some(xi) = patch.closest_point(y, from, REACH) else { continue };
+            let Some(xi) = patch.closest_point(y, from, EXTENDED) else { continue };
             let gap = self.gap(facet, xi, from, y);
             if gap < least && self.rises(own, facet, y) && self.rises(facet, own, y) {
                 least = gap;

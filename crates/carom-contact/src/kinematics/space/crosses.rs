@@ -13,13 +13,11 @@ use carom_solid::Bounds;
 use super::closed_surface::ClosedSurface;
 use super::folds::PatchFolds;
 use super::patch::{Feature, cross, place};
+use crate::constants::SHARPEST_SOLID;
 use crate::inside_itself::InsideItself;
 use crate::kinematics::{Depth, Facets, Side};
 use crate::solid_angle::solid_angle;
 
-/// Solid angle of a body at a node below which a node on the boundary cannot be told from one
-/// inside a fold.
-const SHARPEST: f64 = 0.2;
 type Triangle = [Vector<3>; 3];
 
 impl ClosedSurface {
@@ -74,7 +72,7 @@ impl ClosedSurface {
         nodes.sort_unstable();
         nodes.dedup();
         let mut deepest: Option<InsideItself> = None;
-        for node in nodes.into_iter().filter(|&node| self.seen_from(node, y) >= 4.0 * PI + SHARPEST) {
+        for node in nodes.into_iter().filter(|&node| self.seen_from(node, y) >= 4.0 * PI + SHARPEST_SOLID) {
             let point = place(y, node);
             let distance = |facet: usize| {
                 let is_other = !self.facet_nodes(facet).contains(&node);

@@ -7,17 +7,9 @@
 use carom_algebra::{Mat, Vector};
 use carom_solid::Net;
 
-use super::patch::{Patch, WANDER, cross, place};
+use super::patch::{Patch, cross, place};
+use crate::constants::{ASTRAY, MEETS, WANDER};
 use crate::kinematics::swept::{SpaceHit, SweptPatch};
-
-/// Excess of θ and ξ over their ranges up to which a crossing counts, so that a node exactly on the
-/// surface has crossed it.
-const TOLERANCE: f64 = 1e-6;
-/// Distance between a node and a facet, relative to the length of the facet, at which they meet: a
-/// node that starts behind by round-off must be detected.
-pub(super) const SEPARATION: f64 = 1e-6;
-/// Change of θ and ξ from the isolated crossing, above which Newton's method has found another one.
-const ASTRAY: f64 = 0.05;
 
 /// First crossing of the path of a node with that of a facet from outside, at an instant θ in [0,
 /// `until`], if there is one.
@@ -38,7 +30,7 @@ pub(super) fn crossing(
         [places[0][k], places[1][k]] = ends(n);
     }
     let facet = places.each_ref().map(|places| &places[..patch.nodes.len()]);
-    let hit = swept.first(ends(node), facet, SEPARATION * patch.length(before))?;
+    let hit = swept.first(ends(node), facet, MEETS * patch.length(before))?;
     let hit = SpaceHit { theta: until * hit.theta, ..hit };
     Some(polished(patch, before, now, node, hit).unwrap_or(hit))
 }
@@ -73,7 +65,7 @@ fn polished(patch: Patch, before: &[f64], now: &[f64], node: usize, hit: SpaceHi
         }
         if size <= 1e-12 {
             let inwards = relative.dot(&cross(tangents[0], tangents[1])) < 0.0;
-            let valid = (-TOLERANCE..=1.0 + TOLERANCE).contains(&theta) && patch.furthest(xi) <= TOLERANCE;
+            let valid = (-MEETS..=1.0 + MEETS).contains(&theta) && patch.furthest(xi) <= MEETS;
             let moved = [theta - hit.theta, xi[0] - hit.xi[0], xi[1] - hit.xi[1]];
             let near = moved.iter().all(|x| x.abs() < ASTRAY);
             return (inwards && valid && near).then_some(SpaceHit { theta, xi });

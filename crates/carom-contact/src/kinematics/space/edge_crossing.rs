@@ -11,26 +11,15 @@ use carom_solid::shape::line_shape;
 
 use super::edge_to_edge::EdgeToEdge;
 use super::patch::{cross, place};
+use crate::constants::{ASTRAY, DEEP, EDGES_CROSS, MEETS, PAST_END};
 use crate::kinematics::way::{Allowed, Between, Seen, Way, deepest};
 use crate::kinematics::{Passed, SpaceHit, SweptEdges};
 
-/// Distance between two edges, relative to the shorter one, at which they meet.
-const SEPARATION: f64 = 1e-6;
-/// Sine of the angle between the chords of two edges below which their crossing is not tested,
-/// since they form no pair.
-const ALONG: f64 = 0.1;
-/// Change of θ and ξ from the isolated crossing, above which Newton's method has found another one.
-const ASTRAY: f64 = 0.05;
-/// Allowed depth of two edges on their path, relative to the length of the shorter one, as at the
-/// end of a step.
-const DEEP: f64 = 0.1;
 /// Largest ratio of the motion of a point of an edge to that of its nodes.
 const AMPLIFIED: f64 = 1.6312;
 
 /// Largest number of edges along which closest points are followed.
 const MOST: usize = 100;
-/// Excess |ξ| − 1 up to which a closest point lies on its edge.
-const PAST: f64 = 0.02;
 
 /// Places of the nodes of an edge at the start and at the end of a step.
 type Path = [Vec<Vector<3>>; 2];
@@ -51,14 +40,14 @@ impl EdgeToEdge {
         let crosses = |end: usize| {
             let a = chord(0, end);
             let b = chord(1, end);
-            cross(a, b).norm() >= ALONG * a.norm() * b.norm()
+            cross(a, b).norm() >= EDGES_CROSS * a.norm() * b.norm()
         };
         if !crosses(0) && !crosses(1) {
             return None;
         }
         let outwards = self.outwards(edges, [0.0; 2], before);
         let at = |end: usize| [0, 1].map(|of| paths[of][end].as_slice());
-        let separation = SEPARATION * self.shorter(edges, before);
+        let separation = MEETS * self.shorter(edges, before);
         let hit = swept.first([at(0), at(1)], outwards, separation)?;
         Some(polished(&paths, hit).unwrap_or(hit))
     }
@@ -134,7 +123,7 @@ fn polished(paths: &[Path; 2], hit: SpaceHit) -> Option<SpaceHit> {
             return None;
         }
         if size <= 1e-12 {
-            let inside = (0.0..=1.0).contains(&theta) && xi.iter().all(|x| x.abs() <= 1.0 + SEPARATION);
+            let inside = (0.0..=1.0).contains(&theta) && xi.iter().all(|x| x.abs() <= 1.0 + MEETS);
             return inside.then_some(SpaceHit { theta, xi });
         }
     }
@@ -171,7 +160,7 @@ impl Way for OnWay<'_, '_> {
                 xi = next.xi;
                 continue;
             }
-            if gap.xi.iter().any(|xi| xi.abs() > 1.0 + PAST) || !self.contact.cross(edges, &gap, 0.0, y) {
+            if gap.xi.iter().any(|xi| xi.abs() > 1.0 + PAST_END) || !self.contact.cross(edges, &gap, 0.0, y) {
                 break;
             }
             self.edges = edges;

@@ -19,15 +19,13 @@ use carom_algebra::{Mat, Vector};
 use carom_solid::shape::{LineShape, line_shape};
 
 use super::patch::{cross, place};
+use crate::constants::{ROUND_OFF, WANDER_XI};
 
 /// Largest number of steps of Newton's method for closest points; straight edges need two.
 const STEPS: usize = 40;
-/// Largest |ξ| before Newton's method for closest points has converged.
-const WANDER: f64 = 5.0;
-/// Change of ξ in a step of Newton's method that is round-off.
-const ROUND_OFF: f64 = 4e-15;
-/// Change of ξ that is round-off once it no longer becomes smaller from step to step.
-const SETTLED: f64 = 1e-9;
+/// Change of ξ in a step of Newton's method that is none; a larger one that no longer becomes
+/// smaller from step to step is round-off, too.
+const NONE: f64 = 4e-15;
 /// Sine of the angle between edges below which they run along each other.
 const ALONG: f64 = 1e-3;
 
@@ -96,7 +94,7 @@ impl EdgeGap {
             if !length.is_finite() {
                 return None;
             }
-            if length <= ROUND_OFF || length <= SETTLED && length >= last {
+            if length <= NONE || length <= ROUND_OFF && length >= last {
                 let across = cross(a, b);
                 let size = across.norm();
                 if size <= ALONG * a.norm() * b.norm() {
@@ -112,7 +110,7 @@ impl EdgeGap {
                 step = step * length.recip();
             }
             xi = [xi[0] + step[0], xi[1] + step[1]];
-            if xi.iter().any(|xi| xi.abs() > WANDER) {
+            if xi.iter().any(|xi| xi.abs() > WANDER_XI) {
                 return None;
             }
         }

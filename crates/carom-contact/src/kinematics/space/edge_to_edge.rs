@@ -17,44 +17,17 @@ use super::boundary::Boundary;
 use super::edge_gap::EdgeGap;
 use super::edges::Edges;
 use super::folds::PatchFolds;
+use crate::constants::{
+    DEEPEST, EDGES_BEHIND, EDGES_BETWEEN, EDGES_CORNER, EDGES_CROSS, EDGES_OUTSIDE, EDGES_TOGETHER, EXTENDED,
+    PARALLEL, PAST_END, ROUND_OFF,
+};
 use crate::friction::{FrictionState, Tangential};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::drift::Drift;
 use crate::kinematics::tangents::tangents;
-use crate::kinematics::{Kinematics, ON_FACET, Passed, SweptEdges};
+use crate::kinematics::{BetweenNodes, Kinematics, ON_FACET, Passed, SweptEdges};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
-
-/// Sine of the angle between edges below which they form no pair.
-const ALONG: f64 = 0.1;
-/// Sine of the angle by which the normal of a new pair lies between the facets' normals at least.
-/// Below zero: flat faces that press on each other across their edges turn by their strains, and a
-/// pair there that has opened must find back.
-const BETWEEN: f64 = -0.02;
-/// Negative sine of the angle by which the normal of a known pair may lie outside the facets'
-/// normals: an edge that lies on a facet is constrained at its end by the edge of the facet.
-const OUTSIDE: f64 = -0.4;
-/// Largest depth of two edges, relative to the length of the shorter one, before the step in which
-/// they meet, if they approach by as much in that step.
-const BEHIND: f64 = 0.05;
-/// Largest depth of two edges, relative to the length of the shorter one, at the end of the step in
-/// which they meet.
-const DEEP: f64 = 0.25;
-/// Excess |ξ| − 1 above which a pair of edges is handed over to the next edge.
-const PAST: f64 = 0.02;
-/// Excess |ξ| − 1 up to which an edge is extrapolated past an end that another edge continues.
-const REACH: f64 = 0.2;
-/// Distance 1 − |ξ| from a corner that the contact point of a new pair has at least.
-const CORNER: f64 = 0.04;
-/// Distance 1 − |ξ| from a corner, on both edges, up to which two edges meet at their corners.
-const NEAR_CORNER: f64 = 0.2;
-/// Distance between the contact points of edges that continue each other, relative to the length of
-/// an edge, below which one pair constrains both if their normals are parallel.
-const TOGETHER: f64 = 0.1;
-/// Cosine of the angle between the normals of two pairs above which they are parallel.
-const PARALLEL: f64 = 0.985;
-/// Growth of the bounding box of an edge's path, relative to its size.
-const NOISE: f64 = 1e-9;
 
 /// Numbers of the two edges of a known pair, and its gap if it has one.
 type Held = ([usize; 2], Option<EdgeGap>);
@@ -181,7 +154,7 @@ impl EdgeToEdge {
             let direction = if i == 1 { gap.normal } else { -gap.normal };
             self.sides[i].outwards(edges[i], gap.xi[i], gap.tangent(i), direction, y)
         };
-        gap.sine() >= ALONG && out(0) >= margin && out(1) >= margin
+        gap.sine() >= EDGES_CROSS && out(0) >= margin && out(1) >= margin
     }
 
     pub(super) fn shorter(&self, edges: [usize; 2], y: &[f64]) -> f64 {
@@ -201,23 +174,26 @@ impl EdgeToEdge {
     /// Whether both closest points are near corners. Each corner is then past an edge of the other
     /// body's facet, and neither faces that facet, however nearly the normal is the facet's.
     fn at_corners(&self, edges: [usize; 2], xi: [f64; 2]) -> bool {
-        let ends = |i: usize| self.sides[i].beyond(edges[i], xi[i].signum() * (1.0 + PAST)).is_none();
-        [0, 1].into_iter().all(|i| xi[i].abs() > 1.0 - NEAR_CORNER && ends(i))
+        let ends = |i: usize| self.sides[i].beyond(edges[i], xi[i].signum() * (1.0 + PAST_END)).is_none();
+        [0, 1].into_iter().all(|i| xi[i].abs() > 1.0 - EXTENDED && ends(i))
     }
 
     /// Gap of two edges without a pair that have met between two positions, if they have.
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
-        let met = gap.distance < 0.0 && gap.distance > -DEEP * length;
-        let between = if self.at_corners(edges, gap.xi) { OUTSIDE } else { BETWEEN };
-        if !met || !self.is_on(edges, gap.xi, PAST, -CORNER) || !self.cross(edges, &gap, between, now) {
+        let met = gap.distance < 0.0 && gap.distance > -DEEPEST * length;
+        let between = if self.at_corners(edges, gap.xi) { EDGES_OUTSIDE } else { EDGES_BETWEEN };
+        if !met
+            || !self.is_on(edges, gap.xi, PAST_END, -EDGES_CORNER)
+            || !self.cross(edges, &gap, between, now)
+        {
             return None;
         }
         // A pair that takes edges out of each other faster than they approach would throw them.
         let came = self.closest(edges, gap.xi, before).is_some_and(|start| {
             let approach = start.distance - gap.distance;
-            start.distance >= -approach.max(NOISE * length).min(BEHIND * length)
+            start.distance >= -approach.max(ROUND_OFF * length).min(EDGES_BEHIND * length)
         });
         // Where they are past each other's ends at the start, that gap says nothing.
         (came || self.crossing(&mut self.swept(), edges, before, now).is_some()).then_some(gap)
@@ -227,7 +203,7 @@ impl EdgeToEdge {
     /// another edge continues one of them.
     pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2]) -> Option<OnEdges> {
         let mut to = OnEdges { edges, xi };
-        for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST) {
+        for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST_END) {
             if let Some(next) = self.sides[i].beyond(edges[i], xi[i]) {
                 to.edges[i] = next.edge;
                 to.xi[i] = next.xi;
@@ -241,8 +217,8 @@ impl EdgeToEdge {
     fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
         let OnEdges { edges, xi } = self.beyond(edges, xi)?;
         let gap = self.closest(edges, xi, y)?;
-        let goes_on = self.may_meet(edges) && self.is_on(edges, gap.xi, PAST, PAST);
-        (goes_on && self.cross(edges, &gap, OUTSIDE, y)).then_some((edges, gap))
+        let goes_on = self.may_meet(edges) && self.is_on(edges, gap.xi, PAST_END, PAST_END);
+        (goes_on && self.cross(edges, &gap, EDGES_OUTSIDE, y)).then_some((edges, gap))
     }
 
     /// Hands pairs over to the next edges, or removes them: at the start of a step from where they
@@ -275,8 +251,9 @@ impl EdgeToEdge {
                 changed |= pair.active || gap.distance < 0.0;
                 return true;
             }
-            let stays =
-                |gap: &EdgeGap| self.is_on(edges, gap.xi, REACH, PAST) && self.cross(edges, gap, OUTSIDE, y);
+            let stays = |gap: &EdgeGap| {
+                self.is_on(edges, gap.xi, EXTENDED, PAST_END) && self.cross(edges, gap, EDGES_OUTSIDE, y)
+            };
             if gap.as_ref().is_some_and(stays) || pair.active && !starts {
                 return true;
             }
@@ -300,17 +277,17 @@ impl EdgeToEdge {
         let swept = |i: usize, edge: usize| {
             let [old, new] = [before, now].map(|y| self.sides[i].bounds(edge, y));
             let bounds = drift.path(old, new);
-            bounds.grown(NOISE * bounds.size())
+            bounds.grown(ROUND_OFF * bounds.size())
         };
         let mut tools = self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         let Tools { tree, apart } = &mut *tools;
-        if apart.holds(NOISE, [before, now]) {
+        if apart.holds(ROUND_OFF, [before, now]) {
             return;
         }
         tree.place(self.sides[1].len(), |edge| swept(1, edge));
         let own: Vec<Bounds> = (0..self.sides[0].len()).map(|edge| swept(0, edge)).collect();
         let all = own.iter().skip(1).fold(own[0], carom_solid::Bounds::union);
-        apart.searched([&tree.bounds(), &all], [NOISE, NOISE], now);
+        apart.searched([&tree.bounds(), &all], [ROUND_OFF, ROUND_OFF], now);
         let mut near = Vec::new();
         for (a, bounds) in own.iter().enumerate() {
             tree.find_into(bounds, &mut near);
@@ -378,6 +355,10 @@ impl Kinematics for EdgeToEdge {
         self.sides[1].nodes(self.of(pair)[1])
     }
 
+    fn between_nodes(&self, pair: &Pair) -> Option<BetweenNodes<'_>> {
+        Some(BetweenNodes::on_line(self.sides[0].nodes(pair.node), pair.xi))
+    }
+
     fn is_on_facet(&self, pair: &Pair) -> bool {
         [pair.xi, pair.eta].into_iter().all(|xi| xi.abs() <= 1.0 + ON_FACET)
     }
@@ -404,7 +385,7 @@ impl Kinematics for EdgeToEdge {
                 return;
             }
             let Some(gap) = self.candidate(edges, before, now) else { return };
-            let near = TOGETHER * self.shorter(edges, now);
+            let near = EDGES_TOGETHER * self.shorter(edges, now);
             let is_held = all.iter().any(|(known, other)| {
                 let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
                 let same = |other: &EdgeGap| {
@@ -434,7 +415,8 @@ impl Kinematics for EdgeToEdge {
         let edges = self.of(pair);
         let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
         [pair.xi, pair.eta] = gap.xi;
-        let crosses = self.is_on(edges, gap.xi, REACH, PAST) && self.cross(edges, &gap, OUTSIDE, y);
+        let crosses =
+            self.is_on(edges, gap.xi, EXTENDED, PAST_END) && self.cross(edges, &gap, EDGES_OUTSIDE, y);
         if !pair.active && !crosses {
             rows.push_open();
             return Ok(());

@@ -8,10 +8,8 @@ use carom_solid::{Bounds, Hull};
 
 use super::boundary::{Boundary, EdgeOfFacet};
 use super::patch::{cross, place};
+use crate::constants::KINK;
 use crate::kinematics::Facets;
-
-/// Cosine of the angle up to which an edge continues another one.
-const STRAIGHT: f64 = 0.87;
 
 /// The sharp convex edges of a side.
 #[derive(Debug)]
@@ -62,7 +60,7 @@ impl Edges {
             let out = leaving(k, is_end);
             let others = at[&nodes[k][usize::from(is_end)]].iter().filter(|(other, _)| *other != k);
             let straight = others.map(|&(other, end)| (-leaving(other, end).dot(&out), other, end));
-            let best = straight.fold((STRAIGHT, None), |best, (cosine, other, end)| {
+            let best = straight.fold((KINK, None), |best, (cosine, other, end)| {
                 if cosine > best.0 { (cosine, Some((other, end))) } else { best }
             });
             best.1

@@ -26,24 +26,11 @@ use std::collections::BTreeMap;
 use carom_algebra::{Mat, PrincipalAxes, Vector, principal_axes};
 use carom_solid::{Bounds, Hull, Tree};
 
-use super::boundary::{Boundary, Height, SHARP};
+use super::boundary::{Boundary, Height};
 use super::patch::{PatchPoint, place};
+use crate::constants::{ALIKE, FACING, KINK, MEETS, ROUND_OFF, WALL};
 use crate::kinematics::{Facets, Side};
 
-/// Cosine of the angle between two outward normals, −cos 60°, below which two places face each
-/// other.
-const OPPOSED: f64 = -0.5;
-/// Distance, relative to the length of a facet, up to which facets behind it are the other face of
-/// the same wall.
-const WALL: f64 = 3.0;
-/// Depth behind a facet, relative to its length, from which on a point is behind it: the flanks of
-/// a slit coincide.
-const BEHIND: f64 = 1e-6;
-/// Cosine of the angle between two outward normals above which they do not belong to the two faces
-/// of a wall.
-const ALIKE: f64 = 0.5;
-/// Round-off in volumes, relative to the largest of them.
-const ROUND_OFF: f64 = 1e-9;
 /// Shares of the principal directions of the normals in the order of a smooth part, the strongest
 /// first, if all are alike.
 const SHARES: [f64; 3] = [1.0, 0.618, 0.382];
@@ -104,7 +91,7 @@ impl PatchFolds {
                     return false;
                 }
                 let Height { distance, height } = boundary.height(facet, point, reference);
-                distance < reach && height < -BEHIND * boundary.patch(facet).length(reference)
+                distance < reach && height < -MEETS * boundary.patch(facet).length(reference)
             };
             let mut walls = Vec::new();
             tree.find_into(&Bounds::of(&point.0).grown(reach), &mut walls);
@@ -171,7 +158,7 @@ impl PatchFolds {
                 most = (own, cosine);
             }
         }
-        let opposed = most.1 < OPPOSED || mean.dot(&there) < OPPOSED * mean.norm();
+        let opposed = most.1 < FACING || mean.dot(&there) < FACING * mean.norm();
         (opposed && !self.is_behind(most.0, facet)).then(|| self.side(most.0, facet))
     }
 
@@ -261,7 +248,7 @@ fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
                 let Some(other) = boundary.across(facet, edge) else { continue };
                 let [here, there] = boundary.normals_at_edge(facet, edge, 0.5, reference);
                 let goes_on = boundary.is_mirror(facet) == boundary.is_mirror(other);
-                if part[other] == usize::MAX && goes_on && here.dot(&there) > SHARP {
+                if part[other] == usize::MAX && goes_on && here.dot(&there) > KINK {
                     part[other] = begin;
                     next.push(other);
                 }

@@ -8,8 +8,9 @@ use std::sync::Arc;
 use super::boundary::Boundary;
 use super::edge_to_edge::EdgeToEdge;
 use super::folds::PatchFolds;
-use super::node_to_patch::{NodeToPatch, PAST};
+use super::node_to_patch::NodeToPatch;
 use super::paths::Paths;
+use crate::constants::ROUND_OFF;
 use crate::kinematics::{AtJoints, Combined, NodesWithDepth, Side};
 
 impl NodeToPatch {
@@ -50,7 +51,7 @@ impl NodeToPatch {
         self.folds.is_some()
             && (0..patch.corners()).zip(patch.beyond(xi)).any(|(edge, beyond)| {
                 let next = || self.primary.across(facet, edge);
-                beyond > PAST
+                beyond > ROUND_OFF
                     && next().is_some_and(|next| self.excludes(node, next))
                     && !self.primary.is_sharp(facet, edge, y)
             })

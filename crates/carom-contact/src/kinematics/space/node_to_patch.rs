@@ -20,10 +20,10 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, Hull};
 
 use super::boundary::Boundary;
-use super::crossing::SEPARATION;
 use super::folds::PatchFolds;
 use super::patch::{Feature, PatchPoint, place};
-use super::paths::{Around, NOISE, Paths};
+use super::paths::{Around, Paths};
+use crate::constants::{EXTENDED, HAND_BACK, MEETS, NEAR_END_SPACE, PAST_END, ROUND_OFF};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::hand_over::{Held, Measured, Next, Sliding};
 use crate::kinematics::joint::{AtJoints, OnFacets};
@@ -34,28 +34,6 @@ use crate::kinematics::rounding::rounding;
 use crate::kinematics::{Facets, Kinematics, ON_FACET, OnFacet, Passed, Side, SweptPatch};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing, in_order};
 use crate::rows::Rows;
-
-/// Distance past an edge, relative to the height of the facet, up to which a facet is extrapolated.
-pub(super) const REACH: f64 = 0.2;
-/// Distance past an edge, relative to the height of the facet, beyond which a pair is handed over
-/// to the next facet before Newton's method has converged.
-const HAND_OVER: f64 = 0.02;
-/// Distance past an edge, relative to the height of the facet, beyond which a pair is handed back
-/// to the facet that it came from before Newton's method has converged.
-const HAND_BACK: f64 = 0.1;
-/// Distance past an edge, relative to the height of the facet, above which a closest point is past
-/// it.
-pub(super) const PAST: f64 = 1e-9;
-/// Distance past a sharp edge or the end of a side, relative to the height of the facet, above
-/// which a closest point is past it: blocks that are pressed together edge to edge bulge
-/// differently, and where two edges of either meet neither corner faces the other block.
-const PAST_SIDE: f64 = 2e-2;
-/// Distance along the surface, relative to a facet at a corner, up to which the corner and a node
-/// of the other side meet: just where the node begins to face the side.
-pub(super) const NEAR_END: f64 = 0.5 * PAST_SIDE;
-/// Difference between the gaps of two facets, relative to their length, up to which either keeps a
-/// node out that would be handed to and fro near their joint: two rows would depend on each other.
-const FLAT: f64 = 1e-9;
 
 /// Secondary nodes against a primary side of facets in space.
 #[derive(Debug)]
@@ -163,7 +141,7 @@ impl NodeToPatch {
         let corners = self
             .own
             .as_ref()
-            .map(|own| Corners::new(own, &self.secondary, |place| self.allowed(place), NEAR_END));
+            .map(|own| Corners::new(own, &self.secondary, |place| self.allowed(place), NEAR_END_SPACE));
         Self { reversed: Some(corners.unwrap_or_default()), ..self }
     }
 
@@ -210,7 +188,7 @@ impl NodeToPatch {
         let may_press = self.may_press(node, y, |facet| self.primary.middle(facet, y));
         (0..self.primary.facets())
             .filter_map(|facet| {
-                let xi = self.primary.patch(facet).closest_point(y, from, PAST_SIDE)?;
+                let xi = self.primary.patch(facet).closest_point(y, from, PAST_END)?;
                 let faced = (OnFacet { facet, xi }, self.gap(facet, xi, from, y));
                 may_press(facet).then_some(faced)
             })
@@ -220,7 +198,7 @@ impl NodeToPatch {
     /// Whether ξ lies past an edge of a facet at which no blunt joint with another facet of the
     /// side follows.
     pub(super) fn faces_nothing(&self, facet: usize, xi: [f64; 2], y: &[f64]) -> bool {
-        self.is_past_end(facet, xi, PAST_SIDE, y)
+        self.is_past_end(facet, xi, PAST_END, y)
     }
 
     /// Whether ξ lies, by more than a tolerance, past an edge of a facet at which no blunt joint
@@ -228,7 +206,7 @@ impl NodeToPatch {
     pub(super) fn is_past_end(&self, facet: usize, xi: [f64; 2], tolerance: f64, y: &[f64]) -> bool {
         let patch = self.primary.patch(facet);
         let mut past =
-            (0..patch.corners()).zip(patch.beyond(xi)).filter(|(_, beyond)| *beyond > PAST).peekable();
+            (0..patch.corners()).zip(patch.beyond(xi)).filter(|(_, beyond)| *beyond > ROUND_OFF).peekable();
         past.peek().is_some()
             && (past.any(|(edge, beyond)| {
                 let is_within = beyond <= tolerance && !self.primary.meets_sibling(facet, edge);
@@ -243,7 +221,7 @@ impl NodeToPatch {
         let patch = self.primary.patch(facet);
         let is_beside = self.primary.is_rim(facet, edge, y)
             && self.primary.is_smooth(own, facet, y)
-            && patch.closest_point(y, from, PAST_SIDE).is_some();
+            && patch.closest_point(y, from, PAST_END).is_some();
         is_beside || self.is_blunt(facet, (patch.corners() + edge) as u8, y)
     }
 
@@ -259,7 +237,7 @@ impl NodeToPatch {
                 None => edge == joint || (edge + 1) % corners == joint,
             })
         };
-        let tolerance = |edge: usize| if is_of_joint(edge) { HAND_OVER } else { PAST };
+        let tolerance = |edge: usize| if is_of_joint(edge) { PAST_END } else { ROUND_OFF };
         if (0..corners).zip(patch.beyond(xi)).all(|(edge, beyond)| beyond <= tolerance(edge)) {
             return Next::Stay;
         }
@@ -275,7 +253,7 @@ impl NodeToPatch {
                 continue;
             }
             let found = self.primary.patch(facet).nearest(y, from);
-            let least = best.map_or((1.0 - PAST) * own.distance, |(_, least, _)| least);
+            let least = best.map_or((1.0 - ROUND_OFF) * own.distance, |(_, least, _)| least);
             let lies_on = || match found.at {
                 Feature::Inside => true,
                 Feature::Edge(edge) => self.lies_on_edge(pair.facet, facet, edge, from, y),
@@ -295,8 +273,8 @@ impl NodeToPatch {
             }
             Some((facet, _, xi_there)) if came_from == Some(facet) => {
                 let gaps = [(pair.facet, xi), (facet, xi_there)].map(|(f, xi)| self.gap(f, xi, from, y));
-                let is_flat = (gaps[0] - gaps[1]).abs() <= FLAT * patch.length(y);
-                if is_flat && patch.furthest(xi) <= HAND_OVER || adds_up(facet) {
+                let is_flat = (gaps[0] - gaps[1]).abs() <= ROUND_OFF * patch.length(y);
+                if is_flat && patch.furthest(xi) <= PAST_END || adds_up(facet) {
                     Next::Stay
                 } else {
                     Next::Concave(facet, xi_there)
@@ -309,7 +287,7 @@ impl NodeToPatch {
                 {
                     return Next::Concave(facet, xi);
                 }
-                let bridged = patch.furthest(xi) <= REACH && !self.faces_nothing(pair.facet, xi, y);
+                let bridged = patch.furthest(xi) <= EXTENDED && !self.faces_nothing(pair.facet, xi, y);
                 if bridged { Next::Stay } else { Next::Leave }
             }
         }
@@ -331,8 +309,8 @@ impl NodeToPatch {
         };
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
         let held = Held::all(&pairing.pairs);
-        let is_past = |pair: &Pair| self.beyond(pair) > HAND_OVER;
-        let is_near = |pair: &Pair| self.beyond(pair) <= REACH;
+        let is_past = |pair: &Pair| self.beyond(pair) > PAST_END;
+        let is_near = |pair: &Pair| self.beyond(pair) <= EXTENDED;
         let size = |facet: usize| self.primary.patch(facet).length(now);
         let measured = Measured { is_past: &is_past, is_near: &is_near, depth: &depth, size: &size };
         sliding.search(pairing, held, &measured, events)
@@ -483,15 +461,15 @@ impl Kinematics for NodeToPatch {
         if apart.holds(*margin, [before, now]) {
             return slid;
         }
-        let separation = SEPARATION * self.primary.shortest(before);
+        let separation = MEETS * self.primary.shortest(before);
         let repeats = recent.repeats(*margin, [before, now], separation);
         if !repeats {
             recent.begin(*margin, [before, now]);
             paths.update(&self.primary, &self.hull, self.around(*margin), [before, now]);
             let own = self.secondary.iter().map(|&node| paths.path(node, [before, now]));
             let nodes = own.fold(Bounds::EMPTY, |all, path| all.union(&path));
-            let boxes = [&paths.tree().bounds(), &nodes.grown(NOISE * nodes.size())];
-            apart.searched(boxes, [*margin, NOISE], now);
+            let boxes = [&paths.tree().bounds(), &nodes.grown(ROUND_OFF * nodes.size())];
+            apart.searched(boxes, [*margin, ROUND_OFF], now);
         }
         let found = self.find_pairs(&mut tools, pairs, [before, now], repeats, separation);
         in_order(pairs);
@@ -523,7 +501,7 @@ impl Kinematics for NodeToPatch {
     }
 
     fn update_facets(&self, now: &[f64], pairing: &mut Pairing, events: &mut Vec<PairEvent>) -> bool {
-        let is_near = |pair: &Pair, came: bool| self.beyond(pair) <= if came { HAND_BACK } else { HAND_OVER };
+        let is_near = |pair: &Pair, came: bool| self.beyond(pair) <= if came { HAND_BACK } else { PAST_END };
         let next = |pair: &Pair, previous| self.next_facet(pair, previous, now);
         let sliding = Sliding { nodes: &self.secondary, facets: self.primary.facets(), next };
         sliding.update(pairing, is_near, events)

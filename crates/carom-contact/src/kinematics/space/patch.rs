@@ -7,6 +7,7 @@ use carom_algebra::{Mat, Vector};
 use carom_solid::shape::line_shape;
 use carom_solid::{FacetShape, Net, longest_edge};
 
+use crate::constants::NEAR_FACET;
 use crate::kinematics::projection::bisected;
 
 /// Position of a node in space, from positions flat over all nodes.
@@ -57,12 +58,6 @@ pub enum Feature {
 /// Largest number of steps of Newton's method for a closest point; it needs fewer than ten from any
 /// good guess.
 const STEPS: usize = 40;
-/// Distance past an edge, relative to the height of the facet, up to which a facet is extrapolated
-/// before Newton's method has converged.
-pub(super) const WANDER: f64 = 2.0;
-/// Distance past an edge, relative to the height of the facet, up to which the search for a point
-/// on the facet may go.
-const PASSES: f64 = 0.25;
 
 impl PatchPoint {
     /// Metric τ_α·τ_β of the tangents.
@@ -226,7 +221,7 @@ impl Patch<'_> {
     pub fn nearest(&self, y: &[f64], from: Vector<3>) -> Nearest {
         let distance = |xi: [f64; 2]| self.offset(from, y, xi).norm();
         // On the way to a point beside an edge, Newton's method may pass it.
-        let inside = self.closest_point(y, from, PASSES).filter(|&xi| self.furthest(xi) <= 0.0);
+        let inside = self.closest_point(y, from, NEAR_FACET).filter(|&xi| self.furthest(xi) <= 0.0);
         let inside = inside.map(|xi| Nearest { xi, at: Feature::Inside, distance: distance(xi) });
         let mut nearest = inside;
         for edge in 0..self.corners() {

@@ -2,17 +2,14 @@
 //! gap, slip and their derivatives (`gap.rs`), at the closest point of a pair's facet.
 
 use super::gap::PatchGap;
-use super::node_to_patch::{NodeToPatch, REACH};
-use super::patch::{WANDER, place};
+use super::node_to_patch::NodeToPatch;
+use super::patch::place;
+use crate::constants::{AT_JOINT, EXTENDED, PAST_END, WANDER};
 use crate::kinematics::Facets;
-use crate::kinematics::joint::{AT_JOINT, OnFacets};
+use crate::kinematics::joint::OnFacets;
 use crate::kinematics::tangents::tangents;
 use crate::pair::{ContactError, Pair};
 use crate::rows::Rows;
-
-/// Distance inside an edge, relative to the height of the facet, up to which a node may lie over
-/// it: the foot of a node that is not on the surface is beside a joint with a kink.
-const AROUND_JOINT: f64 = 0.02;
 
 impl NodeToPatch {
     /// The closest point of a pair's facet to its node, searched from the last one.
@@ -20,7 +17,7 @@ impl NodeToPatch {
         let patch = self.primary.patch(pair.facet);
         let from = place(y, self.secondary[pair.node]);
         let start = [pair.xi, pair.eta];
-        patch.closest_from(y, from, start, WANDER).or_else(|| patch.closest_point(y, from, REACH))
+        patch.closest_from(y, from, start, WANDER).or_else(|| patch.closest_point(y, from, EXTENDED))
     }
 }
 
@@ -59,7 +56,7 @@ impl OnFacets for NodeToPatch {
     fn joint_of(&self, pair: &Pair, y: &[f64]) -> Option<u8> {
         let patch = self.primary.patch(pair.facet);
         let furthest = patch.furthest([pair.xi, pair.eta]);
-        if !self.at_joints.mean || !(-AROUND_JOINT..=REACH).contains(&furthest) {
+        if !self.at_joints.mean || !(-PAST_END..=EXTENDED).contains(&furthest) {
             return None;
         }
         // A node may not meet every facet of a joint of its own side.

@@ -5,14 +5,9 @@ use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
 use super::patch::{PatchPoint, place};
+use crate::constants::{PATH_BOX, ROUND_OFF};
 use crate::kinematics::Facets;
 use crate::kinematics::drift::Drift;
-
-/// Depth, relative to the length of a facet, that may be round-off.
-pub(super) const NOISE: f64 = 1e-9;
-/// Growth of the bounding box of a path, relative to its size; larger than the distance at which a
-/// node meets a facet (`crossing.rs`).
-const MEETS: f64 = 1e-5;
 
 /// Bounding boxes of the paths of all facets in a step, in memory that searches reuse.
 #[derive(Debug, Default)]
@@ -99,7 +94,7 @@ impl Paths {
     pub(super) fn path(&self, node: usize, ends: [&[f64]; 2]) -> Bounds {
         let [old, new] = ends.map(|y| Bounds::of(&place(y, node).0));
         let path = self.drift.path(old, new);
-        path.grown(NOISE * path.size())
+        path.grown(ROUND_OFF * path.size())
     }
 
     /// The frame of the boxes.
@@ -110,6 +105,6 @@ impl Paths {
     /// Whether a node may meet a facet on its path, rather than only be near it.
     pub(super) fn may_cross(&self, path: &Bounds, facet: usize) -> bool {
         let tight = &self.tight[facet];
-        tight.grown(MEETS * tight.size()).meets(path)
+        tight.grown(PATH_BOX * tight.size()).meets(path)
     }
 }
