@@ -1,6 +1,7 @@
 //! The constants of geometric decisions, all without unit: angles as cosines or sines, lengths
-//! relative to a facet, ξ in [−1, 1]. Here are no accuracies of iterations, no digits of round-off
-//! that a bound derives, and no weights of a formula: those stand where they are used.
+//! relative to a facet where nothing else is said, in the plane as |ξ| − 1. Here are no accuracies
+//! of iterations, no digits of round-off that a bound derives, and no weights of a formula: those
+//! stand where they are used.
 
 // ---- Round-off and meetings
 
@@ -84,8 +85,7 @@ pub(crate) const EDGES_OUTSIDE: f64 = -0.4;
 
 // ---- Ends of facets
 
-/// Distance past an end up to which a facet is extrapolated, and before the ends of two edges up to
-/// which they meet at their corners.
+/// Distance past an end up to which a facet is extrapolated.
 pub(crate) const EXTENDED: f64 = 0.2;
 /// Distance past an end beyond which a pair is handed over to the next facet before Newton's method
 /// has converged, within which a node beside a joint with a kink may lie over either facet, and up
@@ -125,6 +125,8 @@ pub(crate) const MORTAR_COVERED: f64 = 0.05;
 pub(crate) const FOLLOWS: f64 = 0.5;
 /// Distance 1 − |ξ| from a corner that the contact point of a new pair of edges has at least.
 pub(crate) const EDGES_CORNER: f64 = 0.04;
+/// Distance 1 − |ξ| from a corner, on both edges, up to which two edges meet at their corners.
+pub(crate) const EDGES_NEAR_CORNER: f64 = 0.2;
 /// Distance between the contact points of edges that continue each other, below which one pair
 /// constrains both if their normals are parallel.
 pub(crate) const EDGES_TOGETHER: f64 = 0.1;
@@ -154,7 +156,7 @@ pub(crate) const WALL: f64 = 3.0;
 // ---- Search
 
 /// Share of a depth up to which motion decides; round-off is far below the rest.
-pub(crate) const SURE: f64 = 1.0 - SHALLOW;
+pub(crate) const SURE: f64 = 0.99;
 
 /// Distance up to which another facet is near, and past an edge up to which the search for a point
 /// on a facet may go.

@@ -42,6 +42,9 @@ pub struct Pair {
     /// Gap at the step's start for an energy-conserving penalty. It is stored, since Δg = ∇g·Δy at
     /// the midpoint holds to second order only.
     pub start: Option<f64>,
+    /// Diagonal of the bodies' tangent at its place, of which penalty springs are multiples: that
+    /// of this step, or of a conserving spring as long as the pair is closed.
+    pub diagonal: Option<f64>,
     /// Depth that the pair keeps, ≥ 0, by which its gap is larger: that at which it began.
     pub depth: f64,
     /// Whether the pair has just been found or handed over, so that its depth is not known yet.
@@ -65,6 +68,7 @@ impl Pair {
             lambda: 0.0,
             multiplier: 0.0,
             start: None,
+            diagonal: None,
             depth: 0.0,
             begins: true,
             tangential: Tangential::default(),

@@ -6,8 +6,9 @@
 //! a row that belong to the same one are the components of a vector. Sweeps of the nonlinear
 //! Gauss–Seidel method find which contacts are open, stick, or slip; with that and the directions d
 //! of the slips the problem is linear and is solved exactly. Where its solution contradicts it, the
-//! sweeps go on. Directions of vectors follow from Newton's method: with e across d, Q = −r d + s e
-//! and
+//! sweeps go on. What rests with forces on the edges of its cones has no such states: in the end
+//! forces of the sweeps themselves are taken if they solve the problem to round-off. Directions of
+//! vectors follow from Newton's method: with e across d, Q = −r d + s e and
 //!
 //! ```text
 //! e·u + (d·u/r) s = 0,   δd = −e s/r
@@ -193,7 +194,8 @@ impl Coupled<'_> {
             let Some(j) = second(self.kinds, i) else {
                 let stiffness = self.diagonal(i);
                 let pulled = self.project(z, i, z[i] - motions[i] / stiffness);
-                return stiffness <= 0.0 || stiffness * (pulled - z[i]).abs() <= moved;
+                let is_open = self.kinds[i] != Kind::Normal || motions[i] >= -moved;
+                return if stiffness > 0.0 { stiffness * (pulled - z[i]).abs() <= moved } else { is_open };
             };
             let stiffness = stiffness(self.a, n, [i, j]);
             let Kind::Tangential { of, coefficient, limit } = self.kinds[i] else { return true };

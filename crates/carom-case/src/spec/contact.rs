@@ -56,9 +56,10 @@ pub struct ContactSpec {
     #[key(default = "\"multiplier\"")]
     pub enforcement: Enforcement,
     /// Stiffness of the springs: of a penalty, as a multiple of the mean diagonal entry of the
-    /// tangent in the reference configuration at the secondary node; of an augmented Lagrangian, of
-    /// the diagonal of the step's tangent at the node, which changes the number of rounds; far too
-    /// soft springs may bisect a step.
+    /// tangent in the reference configuration at the secondary node, between nodes of a mean of
+    /// theirs, and with method = "mortar" of the mean per area over the side, whatever its
+    /// materials; of an augmented Lagrangian, of the diagonal of the step's tangent at the node,
+    /// which changes the number of rounds; far too soft springs may bisect a step.
     #[key(Number(POSITIVE), default = "10.0")]
     pub stiffness: f64,
     /// What contact constrains. Default: the law of the scheme.
@@ -169,7 +170,8 @@ pub struct FrictionSpec {
     /// Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a
     /// node sticks while its tangential force is less than μ times its normal force, and otherwise
     /// slips against exactly this force. A number, or a formula of the node's reference position
-    /// and time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.
+    /// and time. In space sharp edges on sharp edges have no friction. 0: no friction. Default: no
+    /// friction, or that of `shear`. Dimensions 2 and 3.
     #[key(Formula(IN_SPACE_AND_TIME), example = "0.3")]
     pub mu: Option<FormulaSpec>,
     /// Coefficient of friction of a node that slips, at most `mu`, which is then that of a node

@@ -55,12 +55,6 @@ pub struct Folds {
     around: Vec<[usize; 2]>,
 }
 
-/// Difference of angles that is round-off.
-const ALIKE: f64 = 1e-6;
-/// Share of a loop at which its order begins if nothing else decides: (1 − g)/2 with the golden
-/// ratio g = 0.618….
-const GENERIC: f64 = 0.190_983;
-
 /// Order of a node and a facet of one boundary along that boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -269,9 +263,7 @@ impl Turns {
         }
     }
 
-    /// Index within a loop of the facet at which its order should begin. Of equals, as on a circle,
-    /// it is one that no symmetry distinguishes: where the ends of the order lie opposite to a place
-    /// that meets them, nodes come later than the first facets and earlier than the last ones.
+    /// Index within a loop of the facet at which its order should begin.
     fn best_start(&self, run: usize, places: Range<usize>) -> usize {
         let start = &self.start[places.clone()];
         let within = &self.within[places];
@@ -285,18 +277,18 @@ impl Turns {
         }
         let mut least = f64::INFINITY;
         let mut largest = f64::NEG_INFINITY;
-        let mut rooms = Vec::with_capacity(n);
+        let mut best = (0, f64::NEG_INFINITY);
         for k in 0..n {
             let arriving = if k == 0 { end(n - 1) - total } else { end(k - 1) };
             let ahead = on[k][0].min(least + total) - start[k];
             let behind = arriving - largest.max(on[k][1] - total);
-            rooms.push(ahead.min(behind));
+            // Of equals the first.
+            if ahead.min(behind) > best.1 + 1e-6 {
+                best = (k, ahead.min(behind));
+            }
             least = least.min(start[k]).min(end(k));
             largest = largest.max(start[k]).max(end(k));
         }
-        let best = rooms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let equals: Vec<usize> = (0..n).filter(|&k| rooms[k] >= best - ALIKE).collect();
-        let share = GENERIC * equals.len() as f64;
-        equals.get(share as usize).copied().unwrap_or(0)
+        best.0
     }
 }

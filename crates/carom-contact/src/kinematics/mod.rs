@@ -166,8 +166,8 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
     /// Global numbers of the nodes of a pair's facet; empty for a rigid primary.
     fn facet_nodes(&self, pair: &Pair) -> &[usize];
 
-    /// The point of the secondary side at which a row acts that is of none of its nodes: of a convex
-    /// part of an obstacle, and of an edge; none of other rows.
+    /// The point of the secondary side at which a row acts that is of none of its nodes: of a
+    /// convex part of an obstacle, and of an edge; none of other rows.
     fn between_nodes(&self, _pair: &Pair) -> Option<BetweenNodes<'_>> {
         None
     }

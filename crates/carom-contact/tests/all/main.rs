@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod active_set;
+mod constants;
 mod derivatives;
 mod discrete_gradient;
 mod edge_points;

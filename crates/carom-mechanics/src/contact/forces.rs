@@ -60,6 +60,7 @@ impl Equations<'_> {
         let direction = contact.interface.direction();
         let gap = self.measure_pair(k, pair, evaluation)?;
         let start = pair.start.unwrap_or(f64::INFINITY);
+        contact.find_spring(pair);
         let of_augmented = || self.augmentation(k, pair, evaluation.at.stiffer).map(|springs| springs[0]);
         let stiffness = contact.spring(pair).or_else(of_augmented).unwrap_or(0.0);
         let Pair { node, lambda, active, multiplier, .. } = *pair;

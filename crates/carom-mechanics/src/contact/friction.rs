@@ -57,7 +57,8 @@ impl Model {
     }
 
     /// The laws of the secondary nodes of each contact at a time; none without friction. `pairs`:
-    /// those of each contact.
+    /// those of each contact at the start of the step, of which parts between nodes have the laws of
+    /// their places.
     ///
     /// # Errors
     /// If a coefficient has no value.
@@ -67,6 +68,29 @@ impl Model {
             friction.laws(time, (&*contact.kinematics, pairs), (&self.reference, self.dimension))
         };
         self.contacts.iter().zip(pairs).map(of).collect()
+    }
+
+    /// The law of a pair that a step may have found, where `laws` has those of nodes; none without
+    /// friction.
+    ///
+    /// # Errors
+    /// If a coefficient has no value.
+    pub(crate) fn law_of(
+        &self,
+        (k, pair): (usize, &Pair),
+        laws: &[Vec<Law>],
+        time: f64,
+    ) -> Result<Option<Law>, NoValue> {
+        let contact = &self.contacts[k];
+        let (Some(law), Some(friction)) = (laws[k].get(pair.node), &contact.friction) else {
+            return Ok(None);
+        };
+        if !friction.acts_on(pair.node) {
+            return Ok(Some(*law));
+        }
+        let between = (&*contact.kinematics, pair);
+        let of_place = friction.law_between(time, between, (&self.reference, self.dimension))?;
+        Ok(Some(of_place.unwrap_or(*law)))
     }
 
     /// Energy of the tangential springs of closed pairs.

@@ -1,7 +1,7 @@
 //! Rows that are linearly independent on the free dofs.
 
 use carom_algebra::{Independent, Plane, SparseRow};
-use carom_contact::{Along, Row, Rows};
+use carom_contact::{Along, Pairing, Row, Rows};
 
 use crate::model::Model;
 
@@ -55,6 +55,15 @@ pub(crate) fn is_dependent<'a>(model: &Model, rows: impl Iterator<Item = Row<'a>
     let mut count = 0;
     let counted = rows.inspect(|_| count += 1).map(|row| ((), row, NEARLY));
     independent_above(model, counted).len() < count
+}
+
+/// Whether some node presses with several pairs, as in a corner: only there slips in the plane can
+/// depend on each other.
+pub(crate) fn share_nodes(model: &Model, pairings: &[Pairing], places: &[(usize, usize)]) -> bool {
+    let mut nodes: Vec<usize> =
+        places.iter().map(|&(k, p)| model.contacts[k].node(&pairings[k].pairs[p])).collect();
+    nodes.sort_unstable();
+    nodes.windows(2).any(|two| two[0] == two[1])
 }
 
 /// The names of those rows that are linearly independent of the earlier ones on the free dofs, each

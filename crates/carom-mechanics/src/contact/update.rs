@@ -39,7 +39,10 @@ pub(crate) type Events = Vec<(usize, PairEvent)>;
 /// Prepares the pairs for a step from positions `y`.
 pub(crate) fn start_step(model: &Model, y: &[f64], pairings: &mut [Pairing]) {
     for (contact, pairing) in model.contacts.iter().zip(&mut *pairings) {
-        pairing.pairs.iter_mut().for_each(|pair| contact.kinematics.start_step(pair, y));
+        pairing.pairs.iter_mut().for_each(|pair| {
+            contact.kinematics.start_step(pair, y);
+            contact.renew_spring(pair);
+        });
     }
     ease(model, y, pairings);
 }

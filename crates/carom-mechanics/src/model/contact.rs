@@ -101,17 +101,34 @@ impl Contact {
         self.kinematics.secondary()[pair.node]
     }
 
+    /// Gives a pair the diagonal of which its springs are multiples, if it has none yet.
+    pub(crate) fn find_spring(&self, pair: &mut Pair) {
+        if let (Some(springs), None) = (&self.springs, pair.diagonal) {
+            pair.diagonal = Some(springs.diagonal.at(&*self.kinematics, pair));
+        }
+    }
+
     /// Stiffness of the penalty spring of a pair; none of a constraint.
     pub(crate) fn spring(&self, pair: &Pair) -> Option<f64> {
         let springs = self.springs.as_ref()?;
-        Some(springs.factors[0] * springs.diagonal.at(&*self.kinematics, pair))
+        let there = || springs.diagonal.at(&*self.kinematics, pair);
+        Some(springs.factors[0] * pair.diagonal.unwrap_or_else(there))
+    }
+
+    /// Lets the spring of a pair be that of its place, at the start of a step: an energy-conserving
+    /// one only if the pair is open, since the energy of a spring that changes is not conserved.
+    pub(crate) fn renew_spring(&self, pair: &mut Pair) {
+        if !(pair.active && self.interface.direction().accumulates()) {
+            pair.diagonal = None;
+        }
     }
 
     /// Stiffness of the tangential spring of a pair; none where friction is a constraint.
     pub(crate) fn stick_spring(&self, pair: &Pair) -> Option<f64> {
         let springs = self.springs.as_ref()?;
         let rubs = self.friction.as_ref().is_some_and(|friction| pair.node < friction.places.len());
-        rubs.then(|| springs.factors[1] * springs.diagonal.at(&*self.kinematics, pair))
+        let there = || springs.diagonal.at(&*self.kinematics, pair);
+        rubs.then(|| springs.factors[1] * pair.diagonal.unwrap_or_else(there))
     }
 
     /// Whether a pair keeps out a single node beside a field of pressure.

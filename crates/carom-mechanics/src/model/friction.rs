@@ -61,21 +61,42 @@ impl Friction {
         (reference, dimension): (&[f64], usize),
     ) -> Result<Vec<Law>, NoValue> {
         let none = Law { stick: 0.0, slip: 0.0, decay: 0.0, limit: f64::INFINITY };
-        let limit = |node: usize| self.limits.get(node).copied().unwrap_or(f64::INFINITY);
+        let limit = |node| self.limit(node);
         let of_nodes = self.places.iter().enumerate();
         let mut laws: Vec<Law> =
             of_nodes.map(|(node, place)| self.law(place, limit(node), time)).collect::<Result<_, _>>()?;
         if kinematics.nodes() < self.places.len() {
             for pair in pairs.iter().filter(|pair| pair.node < self.places.len()) {
-                let Some(point) = kinematics.between_nodes(pair) else { continue };
-                let of_node = |node| self.limits_of_nodes.get(&node).copied().unwrap_or(0.0);
-                let has_own = self.limits_of_nodes.is_empty() || limit(pair.node) == 0.0;
-                let limit = if has_own { limit(pair.node) } else { point.mean(of_node) };
-                laws[pair.node] = self.law(&point.place(reference, dimension), limit, time)?;
+                if let Some(law) = self.law_between(time, (kinematics, pair), (reference, dimension))? {
+                    laws[pair.node] = law;
+                }
             }
         }
         laws.extend(std::iter::repeat_n(none, self.edges));
         Ok(laws)
+    }
+
+    /// The law of a pair that is of no node, at a time; none of others.
+    ///
+    /// # Errors
+    /// A coefficient that is negative or not finite.
+    pub(crate) fn law_between(
+        &self,
+        time: f64,
+        (kinematics, pair): (&dyn Kinematics, &Pair),
+        (reference, dimension): (&[f64], usize),
+    ) -> Result<Option<Law>, NoValue> {
+        let Some(point) = kinematics.between_nodes(pair) else { return Ok(None) };
+        let own = self.limit(pair.node);
+        let of_node = |node| self.limits_of_nodes.get(&node).copied().unwrap_or(0.0);
+        // A limit of zero is that of a plane of symmetry.
+        let has_own = self.limits_of_nodes.is_empty() || own == 0.0;
+        let limit = if has_own { own } else { point.mean(of_node) };
+        self.law(&point.place(reference, dimension), limit, time).map(Some)
+    }
+
+    fn limit(&self, node: usize) -> f64 {
+        self.limits.get(node).copied().unwrap_or(f64::INFINITY)
     }
 
     fn law(&self, place: &[f64], limit: f64, time: f64) -> Result<Law, NoValue> {

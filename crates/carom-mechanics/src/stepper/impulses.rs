@@ -15,7 +15,7 @@ use carom_time::ImpulseShares;
 use super::rubbing::{combined, friction_state, kind};
 use super::watch::{active, measure_into, moves, overconstrained};
 use crate::contact::constraints::Constraints;
-use crate::contact::independent::{HELD, is_dependent};
+use crate::contact::independent::{HELD, is_dependent, share_nodes};
 use crate::contact::loose::loose;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -128,17 +128,18 @@ impl Impulses {
             Constraints::plain(model.dimension, places.iter().map(|&(k, p)| ((k, p), measured[k].row(p))));
         let mut kinds = vec![Kind::Normal; places.len()];
         let mut restitution: Vec<f64> = places.iter().map(|&(k, _)| model.contacts[k].restitution).collect();
-        let laws = model.friction_laws(state.time + 0.5 * dt, &state.pairs)?;
+        let middle = state.time + 0.5 * dt;
+        let laws = model.friction_laws(middle, &state.pairs)?;
         let mut combination = Rows::new(model.dimension);
         for (of, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
             let contact = &model.contacts[k];
             let pair = &mut pairings[k].pairs[p];
-            let Some(law) = laws[k].get(pair.node) else { continue };
+            let Some(law) = model.law_of((k, pair), &laws, middle)? else { continue };
             let failed = |error| Rejected::Contact { contact: contact.name.clone(), error };
             let mut slips = Rows::new(model.dimension);
             contact.kinematics.slip(pair, predicted, &[], &mut slips).map_err(failed)?;
             pair.tangential.tangents = slips.tangents(0);
-            let law = Law { limit: dt * law.limit, ..*law };
+            let law = Law { limit: dt * law.limit, ..law };
             let kind = kind(&law, of, state, (k, pair), &slips, &state.v);
             for along in loose(model, measured[k].row(p), &slips, &path, HELD) {
                 combination.clear();
@@ -148,7 +149,9 @@ impl Impulses {
                 restitution.push(0.0);
             }
         }
-        let dependent = dependent || model.has_friction() && is_dependent(model, rows.rows.iter());
+        let may_depend = model.dimension == 3 || share_nodes(model, pairings, &places);
+        let dependent =
+            dependent || model.has_friction() && may_depend && is_dependent(model, rows.rows.iter());
         let mut released = Vec::new();
         if !rows.is_empty() && (shares.velocity != 0.0 || shares.acceleration != 0.0) {
             work.system.mass_with(model, &Constraints::none(model.dimension))?;

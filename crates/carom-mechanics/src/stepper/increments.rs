@@ -12,7 +12,7 @@ use super::scratch::Scratch;
 use super::tied_mass::TiedMass;
 use super::watch::{active, carry_into, measure_into, moves, overconstrained};
 use crate::contact::depths::{begin, beginning, ease, gap_at};
-use crate::contact::independent::{HELD, is_dependent};
+use crate::contact::independent::{HELD, is_dependent, share_nodes};
 use crate::contact::loose::loose;
 use crate::contact::update::search;
 use crate::model::Model;
@@ -193,11 +193,11 @@ impl Increments<'_> {
         impulses.extend(places.iter().map(|&(k, p)| -pairings[k].pairs[p].lambda));
         along.clear();
         for (i, &(k, p)) in places.iter().enumerate().filter(|_| model.has_friction()) {
-            let Some(law) = laws[k].get(pairings[k].pairs[p].node) else { continue };
             let pair = &mut pairings[k].pairs[p];
+            let Some(law) = model.law_of((k, pair), laws, state.time)? else { continue };
             slips.clear();
             slip_into(model, state, (k, pair), slips)?;
-            let kind = kind(law, i, state, (k, pair), slips, self.before);
+            let kind = kind(&law, i, state, (k, pair), slips, self.before);
             for part in loose(model, rows[k].row(p), slips, free, HELD) {
                 acting.push_combined(slips, 0, &part[..slips.len()]);
                 along.push(part);
@@ -233,8 +233,9 @@ impl Increments<'_> {
         if !places.iter().map(named).eq(examined.iter().copied()) {
             examined.clear();
             examined.extend(places.iter().map(named));
+            let may_depend = model.dimension == 3 || share_nodes(model, pairings, places);
             *dependent = is_dependent(model, acting.iter().take(places.len()))
-                || model.has_friction() && is_dependent(model, acting.iter());
+                || model.has_friction() && may_depend && is_dependent(model, acting.iter());
         }
         Ok(Cone { matrix, right, kinds, is_dependent: *dependent }.solve(impulses)?)
     }

@@ -350,7 +350,8 @@ impl Closed {
             let motion = self.solve_for(model, right, system, &ways)?;
             let rates = self.slip_rates(&motion.x);
             let all = rates.iter().chain(right.slips).flatten().chain(right.gaps);
-            let none = ROUND_OFF * all.fold(0.0_f64, |most, rate| most.max(rate.abs()));
+            // Rates are differences of motions: where all sides stick they are round-off of these.
+            let none = ROUND_OFF * all.fold(max_abs(&motion.x), |most, rate| most.max(rate.abs()));
             let impulses = motion.tangential.iter().map(|q| length(*q));
             let no_impulse = ROUND_OFF * impulses.fold(max_abs(&motion.normal), f64::max);
             let mut changed = false;

@@ -14,8 +14,8 @@ pub struct Episode {
     pub end: Option<usize>,
 }
 
-/// Share of a length of time that its round-off does not reach.
-const ROUND_OFF: f64 = 1e-9;
+/// Difference of times, relative to the last one, that is round-off.
+const ROUND_OFF: f64 = 1e-12;
 /// Number of windows per episode over which peaks are averaged.
 const WINDOWS: f64 = 16.0;
 
@@ -52,7 +52,8 @@ pub fn episodes(history: &History, bridge: f64) -> Vec<Episode> {
         counts.into_iter().flatten().any(|count| *count > 0.0)
     };
     // An interruption of exactly this length is one, whatever the last digits of its times.
-    let bridge = (1.0 - ROUND_OFF) * bridge;
+    let last = times.last().map_or(0.0, |time| time.abs());
+    let bridge = bridge - ROUND_OFF * last;
     let mut found: Vec<Episode> = Vec::new();
     for i in (0..active.len()).filter(|row| is_in_contact(*row)) {
         match found.last_mut() {

@@ -94,6 +94,14 @@ fn a_bounce_by_hand() {
     }
     let episode = |start, end| Episode { start, end };
     assert_eq!(episodes(&history, 0.01), [episode(16, Some(20)), episode(21, Some(32))]);
+    // An interruption of one row is as long as a bridge of one row, whatever the last digits.
+    let times = history.times();
+    let row = times[21] - times[20];
+    for last_digits in [-1e-13, 0.0, 1e-13] {
+        let bridge = row * (1.0 + last_digits);
+        assert_eq!(episodes(&history, bridge).len(), 2, "{last_digits}");
+    }
+    assert_eq!(episodes(&history, 1.001 * row).len(), 1);
 }
 
 #[test]

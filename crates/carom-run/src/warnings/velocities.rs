@@ -6,7 +6,8 @@ use carom_mechanics::model::{BodyInstance, Model, Prescribed};
 
 use super::found::{Found, short};
 
-/// Difference of velocities, relative to that of the motion, that is round-off of a formula.
+/// Difference of velocities, relative to the largest one of the body, that is round-off of a
+/// formula.
 const ALIKE: f64 = 1e-6;
 /// Velocity of an impact over the speed of waves in a bar; a published bar has just a third.
 const FAST: f64 = (1.0 + 1e-9) / 3.0;
@@ -61,6 +62,7 @@ struct Jump {
     dof: usize,
     from: f64,
     to: f64,
+    is_held: bool,
 }
 
 impl Jump {
@@ -83,8 +85,9 @@ fn moved_at_once(
         dof: moved.dof,
         from: model.initial_velocity[moved.dof],
         to: moved.motion[1],
+        is_held: false,
     };
-    let stopped = model.stopped.iter().map(|&(dof, from)| Jump { dof, from, to: 0.0 });
+    let stopped = model.stopped.iter().map(|&(dof, from)| Jump { dof, from, to: 0.0, is_held: true });
     let jumps = start.moved.iter().map(of_support).chain(stopped);
     let of_part = jumps.filter(|jump| own.contains(&jump.dof));
     let largest = of_part.max_by(|a, b| a.size().total_cmp(&b.size()))?;
@@ -100,16 +103,20 @@ fn moved_at_once(
     let cells = (0..mesh.cell_count()).filter(|&cell| mesh.cell(cell).contains(&node));
     let at_node = cells.map(|cell| impedance(materials[mesh.region(cell)])).reduce(f64::max)?;
     let stress = at_node * size;
+    let axis = ["x", "y", "z"][largest.dof % d];
+    let velocity = &units.velocity;
+    let supports = if largest.is_held {
+        format!("a support holds it along {axis}")
+    } else {
+        format!("a support moves it along {axis} with {} {velocity} from the start on", short(largest.to))
+    };
     let what = format!(
-        "a support moves it along {} with {} {velocity} from the start on, where its initial velocity is {} {velocity}: this jump of {} {velocity} starts a wave of stress ρc·{} = {} {}",
-        ["x", "y", "z"][largest.dof % d],
-        short(largest.to),
+        "{supports}, where its initial velocity is {} {velocity}: this jump of {} {velocity} starts a wave of stress ρc·{} = {} {}",
         short(largest.from),
         short(size),
         short(size),
         short(stress),
         units.stress,
-        velocity = units.velocity,
     );
     Some(Found::of_body(&part.name, what))
 }

@@ -91,6 +91,9 @@ fn the_square_is_sound() {
     let mesh = with("5 5 0", "5 5 0").unwrap();
     assert_eq!(mesh.nodes.len(), 4);
     assert_eq!(mesh.repairs, ["nodes of the file that belong to no cell were dropped: 1"]);
+    // Several blanks and tabs separate numbers as one does.
+    let spaced = with("2 8 \"plate\"", " 2\t8   \"plate\" ").unwrap();
+    assert_eq!(spaced.nodes.len(), 4);
     // The line runs from 2 to 1; the side has the body on its left.
     assert_eq!(mesh.sides["low"][0].nodes, [0, 1]);
     assert!(gmsh::read(SQUARE.replace('\n', "\r\n").as_bytes()).unwrap().body("plate").is_ok());

@@ -23,9 +23,9 @@ use crate::constants::{ROUND_OFF, WANDER_XI};
 
 /// Largest number of steps of Newton's method for closest points; straight edges need two.
 const STEPS: usize = 40;
-/// Change of ξ in a step of Newton's method that is none; a larger one that no longer becomes
+/// Change of ξ in a step of Newton's method that is round-off; a larger one that no longer becomes
 /// smaller from step to step is round-off, too.
-const NONE: f64 = 4e-15;
+const LAST_DIGITS: f64 = 4e-15;
 /// Sine of the angle between edges below which they run along each other.
 const ALONG: f64 = 1e-3;
 
@@ -94,7 +94,7 @@ impl EdgeGap {
             if !length.is_finite() {
                 return None;
             }
-            if length <= NONE || length <= ROUND_OFF && length >= last {
+            if length <= LAST_DIGITS || length <= ROUND_OFF && length >= last {
                 let across = cross(a, b);
                 let size = across.norm();
                 if size <= ALONG * a.norm() * b.norm() {

@@ -18,8 +18,8 @@ use super::edge_gap::EdgeGap;
 use super::edges::Edges;
 use super::folds::PatchFolds;
 use crate::constants::{
-    DEEPEST, EDGES_BEHIND, EDGES_BETWEEN, EDGES_CORNER, EDGES_CROSS, EDGES_OUTSIDE, EDGES_TOGETHER, EXTENDED,
-    PARALLEL, PAST_END, ROUND_OFF,
+    DEEPEST, EDGES_BEHIND, EDGES_BETWEEN, EDGES_CORNER, EDGES_CROSS, EDGES_NEAR_CORNER, EDGES_OUTSIDE,
+    EDGES_TOGETHER, EXTENDED, PARALLEL, PAST_END, ROUND_OFF,
 };
 use crate::friction::{FrictionState, Tangential};
 use crate::kinematics::apart::Apart;
@@ -175,7 +175,7 @@ impl EdgeToEdge {
     /// body's facet, and neither faces that facet, however nearly the normal is the facet's.
     fn at_corners(&self, edges: [usize; 2], xi: [f64; 2]) -> bool {
         let ends = |i: usize| self.sides[i].beyond(edges[i], xi[i].signum() * (1.0 + PAST_END)).is_none();
-        [0, 1].into_iter().all(|i| xi[i].abs() > 1.0 - EXTENDED && ends(i))
+        [0, 1].into_iter().all(|i| xi[i].abs() > 1.0 - EDGES_NEAR_CORNER && ends(i))
     }
 
     /// Gap of two edges without a pair that have met between two positions, if they have.
