@@ -57,8 +57,8 @@ impl Model {
     }
 
     /// The laws of the secondary nodes of each contact at a time; none without friction. `pairs`:
-    /// those of each contact at the start of the step, of which parts between nodes have the laws of
-    /// their places.
+    /// those of each contact at the start of the step, of which parts between nodes have the laws
+    /// of their places.
     ///
     /// # Errors
     /// If a coefficient has no value.
