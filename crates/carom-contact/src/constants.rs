@@ -33,7 +33,8 @@ pub(crate) const CANCELS: f64 = 1e-6;
 /// Cosine of the kink, 30°, from which on a joint is a corner, and an edge is sharp. A regular
 /// polygon of twelve sides has corners.
 pub(crate) const KINK: f64 = 0.87;
-/// Sine of the same angle: a facet rises in front of another one, a joint is blunt up to it.
+/// Sine of the angle of a kink, 30°: a facet rises in front of another one, a joint is blunt up to
+/// it.
 pub(crate) const KINK_SINE: f64 = 0.5;
 /// Difference between a depth and that from the extension of a facet past a joint that is no
 /// corner.
@@ -41,12 +42,13 @@ pub const BESIDE_KINK: f64 = 1.0 - KINK;
 /// Angle of a body at a node, 30°, below which a node on the boundary cannot be told from one
 /// inside a fold.
 pub(crate) const SHARPEST: f64 = std::f64::consts::PI / 6.0;
-/// The same in space, as a solid angle.
+/// Solid angle of a body at a node below which a node on the boundary cannot be told from one
+/// inside a fold in space.
 pub(crate) const SHARPEST_SOLID: f64 = 0.2;
 /// Cosine of the angle, 10°, up to which two facets, or two normals, count as parallel.
 pub(crate) const PARALLEL: f64 = 0.985;
-/// Sine of the same angle: depth, relative to the distance from the end of a side, up to which a
-/// node past that end has not crossed the facet.
+/// Sine of the angle, 10°, up to which facets count as parallel: depth, relative to the distance
+/// from the end of a side, up to which a node past that end has not crossed the facet.
 pub(crate) const PARALLEL_SINE: f64 = 0.17;
 /// Cosine of the angle, 3°, between two facets above which a part touches one of them: the rows of
 /// both would nearly be the same, and the gap differs by r (1 − cos 3°).
@@ -62,7 +64,7 @@ pub(crate) const OPPOSED: f64 = -0.7;
 /// Distance of −n from the cone of the normals at a node above which none opposes the facet: within
 /// 11° of perpendicular.
 pub(crate) const ASIDE: f64 = 0.98;
-/// Cosine of the same angle.
+/// Cosine of the angle, 11° from perpendicular, at which a normal still opposes the facet.
 pub(crate) const ASIDE_COSINE: f64 = 0.2;
 /// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet.
 pub(crate) const FOLDED_BACK: f64 = 80.0 * std::f64::consts::PI / 180.0;
@@ -79,8 +81,9 @@ pub(crate) const EDGES_CROSS: f64 = 0.1;
 /// least. Below zero: flat faces that press on each other across their edges turn by their strains,
 /// and a pair there that has opened must find back.
 pub(crate) const EDGES_BETWEEN: f64 = -0.02;
-/// The same of a known pair: an edge that lies on a facet is constrained at its end by the edge of
-/// the facet.
+/// Negative sine of the angle by which the normal of a known pair of edges may lie outside the
+/// facets' normals: an edge that lies on a facet is constrained at its end by the edge of the
+/// facet.
 pub(crate) const EDGES_OUTSIDE: f64 = -0.4;
 
 // ---- Ends of facets
@@ -108,7 +111,7 @@ pub(crate) const PAST_SIDE: f64 = 1e-3;
 /// Distance along the surface up to which a corner and a node of the other side meet: just where
 /// the node begins to face the side.
 pub(crate) const NEAR_END: f64 = 0.5 * PAST_SIDE;
-/// The same in space.
+/// Distance along the surface, in space, up to which a corner and a node of the other side meet.
 pub(crate) const NEAR_END_SPACE: f64 = 0.5 * PAST_END;
 /// Lengths past an end up to which the closest point of a pair is followed before Newton's method
 /// has converged.
@@ -166,5 +169,6 @@ pub(crate) const PATH_MARGIN: f64 = 0.1;
 /// Margin around the path of a facet within which a node is tracked, relative to the path: before
 /// contact, and as far as facets are extrapolated.
 pub(crate) const WATCHED: f64 = 0.35;
-/// The same where only contacts within the step matter.
+/// Margin around the path of a facet within which a node is tracked, relative to the path, where
+/// only contacts within the step matter.
 pub(crate) const WITHIN_STEP: f64 = 0.01;

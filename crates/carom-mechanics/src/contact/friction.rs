@@ -82,9 +82,8 @@ impl Model {
         time: f64,
     ) -> Result<Option<Law>, NoValue> {
         let contact = &self.contacts[k];
-        let (Some(law), Some(friction)) = (laws[k].get(pair.node), &contact.friction) else {
-            return Ok(None);
-        };
+        let Some(friction) = &contact.friction else { return Ok(None) };
+        let Some(law) = laws[k].get(pair.node) else { return Ok(None) };
         if !friction.acts_on(pair.node) {
             return Ok(Some(*law));
         }

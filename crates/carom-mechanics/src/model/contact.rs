@@ -69,15 +69,15 @@ pub struct Springs {
 /// A positive quantity of the rows of a contact.
 #[derive(Default)]
 pub struct OfRows {
-    /// Of each secondary node, by index, and of what follows the nodes.
+    /// Values of the secondary nodes, by index, and of what follows the nodes.
     pub of_rows: Vec<f64>,
-    /// Of the nodes of the secondary side, by their global numbers: a row that is of none of them
-    /// has the mean of those next to it.
+    /// Values of the nodes of the secondary side, by their global numbers: a row that is of none of
+    /// them has the mean of those next to it.
     pub of_nodes: HashMap<usize, f64>,
 }
 
 impl OfRows {
-    /// That of the row of a pair.
+    /// The value of the row of a pair.
     pub(crate) fn at(&self, kinematics: &dyn Kinematics, pair: &Pair) -> f64 {
         let known = |point: &BetweenNodes| point.nodes.iter().all(|node| self.of_nodes.contains_key(node));
         match kinematics.between_nodes(pair).filter(known) {
@@ -103,9 +103,8 @@ impl Contact {
 
     /// Gives a pair the diagonal of which its springs are multiples, if it has none yet.
     pub(crate) fn find_spring(&self, pair: &mut Pair) {
-        if let (Some(springs), None) = (&self.springs, pair.diagonal) {
-            pair.diagonal = Some(springs.diagonal.at(&*self.kinematics, pair));
-        }
+        let Some(springs) = self.springs.as_ref().filter(|_| pair.diagonal.is_none()) else { return };
+        pair.diagonal = Some(springs.diagonal.at(&*self.kinematics, pair));
     }
 
     /// Stiffness of the penalty spring of a pair; none of a constraint.

@@ -127,7 +127,7 @@ fn a_support_that_starts_at_once() {
     assert!(jump(&["body.bar.velocity=[-0.01]"])[0].contains("jump of 0.0200 m/s"));
     assert!(jump(&["body.bar.velocity=[0.01]"]).is_empty());
     assert!(jump(&["support=[{ on = [\"bar.left\"], move = { x = \"0.01*t^2\" } }]"]).is_empty());
-    // One that holds an end stops it.
+    // A support that holds an end stops it.
     let held = "support=[{ on = [\"bar.left\"], fix = [\"x\"] }]";
     assert!(jump(&[held, "body.bar.velocity=[0.5]"])[0].contains("jump of 0.500 m/s"));
     assert!(jump(&[held]).is_empty());
