@@ -78,7 +78,7 @@ pub const WARNINGS: [Entry; 34] = [
         id: "velocity-jump",
         why: "neither mesh nor step resolves the front of this wave: stresses and contact forces oscillate behind \
               it, and their peaks depend on both",
-        advice: "an initial velocity of the body that is that of the motion, or a motion that begins with the velocity of the body, such as one with t^2",
+        advice: "an initial velocity of the body that is that of the motion, and zero where a support holds it, or a motion that begins with the velocity of the body, such as one with t^2",
         rule: Rule::Model(velocities::velocity_jump),
     },
     Entry {
