@@ -135,8 +135,8 @@ fn edges_on_springs_are_as_deep_as_their_row() {
 fn the_spring_of_an_edge_does_not_depend_on_its_first_node() {
     let force = |sets: &[&str]| finish(simulation(CROSSED, sets)).state().contact_forces[0][2];
     // Mirrored along the edge of the upper bar, which ends with its other node there.
-    let shift = "body.lower.place={ rotate = { axis = [1, 0, 0], angle = 45 }, shift = [0, 0.2, -0.282842712474619] }";
-    let mirrored = "body.lower.place={ rotate = { axis = [1, 0, 0], angle = 45 }, shift = [0, -0.2, -0.282842712474619] }";
+    let shift = "body.lower.place={ rotate = { axis = [1, 0, 0], angle = 45 }, shift = [0, 0.6, -0.282842712474619] }";
+    let mirrored = "body.lower.place={ rotate = { axis = [1, 0, 0], angle = 45 }, shift = [0, -0.6, -0.282842712474619] }";
     let [one, other] = [shift, mirrored].map(|set| force(&[set]));
     assert!(one.abs() > 0.1 && (one / other - 1.0).abs() < 1e-9, "{one} {other}");
 }
