@@ -64,7 +64,7 @@ fn a_circle_presses_with_the_law_of_the_place_where_it_is() {
             assert!(away < 1e-8 * there[1].abs(), "{law} from {from}: {carried:?} {there:?}");
         }
     }
-    // Carried to X = 2.4 and dragged along, the circle slips with the coefficient of that place, 0.4.
+    // Carried to X = 2.4 and dragged along, the circle slips with the coefficient there, 0.4.
     let [x, y, _] = force(0.05, "mu = \"if(X < 2, 0.1, 0.4)\"");
     assert!((x / y).abs() > 0.3, "{x} {y}");
 }
