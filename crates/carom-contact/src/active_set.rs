@@ -117,7 +117,7 @@ fn opponents(pairs: &[Contender], wrong: &[usize], alike: impl Fn(usize, usize) 
     let Some(&pulled) = wrong.iter().find(|&&k| pairs[k].active) else { return Vec::new() };
     let pressed = (0..pairs.len()).filter(|&k| pairs[k].active && pairs[k].lambda < 0.0);
     let mut alike: Vec<(f64, usize)> = pressed.map(|k| (alike(pulled, k), k)).collect();
-    alike.retain(|&(cosine, _)| cosine >= ALIKE);
+    alike.retain(|&(cosine, _)| cosine >= ALIKE.cosine);
     alike.sort_by(|a, b| b.0.total_cmp(&a.0));
     alike.into_iter().map(|(_, k)| k).collect()
 }

@@ -1,7 +1,11 @@
-//! The constants of geometric decisions, all without unit: angles as cosines or sines, lengths
-//! relative to a facet where nothing else is said, in the plane as |ξ| − 1. Here are no accuracies
-//! of iterations, no digits of round-off that a bound derives, and no weights of a formula: those
-//! stand where they are used.
+//! The constants of geometric decisions, all without unit: angles, and lengths relative to a facet
+//! where nothing else is said, in the plane as |ξ| − 1. Some follow from others. Here are no
+//! accuracies of iterations, no digits of round-off that a bound derives, and no weights of a
+//! formula: those stand where they are used.
+
+use std::f64::consts::PI;
+
+use crate::angle::Angle;
 
 // ---- Round-off and meetings
 
@@ -11,70 +15,38 @@ pub const ROUND_OFF: f64 = 1e-9;
 /// Distance at which a path meets a facet or an edge, and excess of θ and ξ over their ranges up to
 /// which it does: what starts on a surface, or behind it by round-off, must be detected.
 pub(crate) const MEETS: f64 = 1e-6;
-/// Growth of the box of a path, relative to its size: more than [`MEETS`].
-pub(crate) const PATH_BOX: f64 = 1e-5;
 /// Change of θ and ξ from an isolated crossing, above which Newton's method has found another one.
 pub(crate) const ASTRAY: f64 = 0.05;
 /// Difference in θ below which facets are reached together: where they meet, and a path lies in the
 /// neighbouring side.
 pub(crate) const REACHED_TOGETHER: f64 = 1e-4;
-/// Excess |ξ| − 1 up to which a contact point lies on its facet: a node that slides along a joint
-/// has it within a second-order distance of its end.
-pub(crate) const ON_FACET: f64 = 1e-5;
 /// Distance of a closest point from a joint up to which it lies there: above round-off, and far
 /// below what a node slides in a step.
 pub(crate) const AT_JOINT: f64 = 1e-7;
+
 /// Length of a sum of unit vectors, or area between them, below which they cancel or are parallel,
 /// as at the tip of a slit.
-pub(crate) const CANCELS: f64 = 1e-6;
+pub(crate) const CANCELS: f64 = MEETS;
+/// Excess |ξ| − 1 up to which a contact point lies on its facet, as a node that slides along a
+/// joint within a second-order distance of its end; and growth of the box of a path, relative to
+/// its size. Both are more than [`MEETS`].
+pub(crate) const ON_FACET: f64 = 10.0 * MEETS;
 
 // ---- Angles
 
-/// Cosine of the kink, 30°, from which on a joint is a corner, and an edge is sharp. A regular
-/// polygon of twelve sides has corners.
-pub(crate) const KINK: f64 = 0.87;
-/// Sine of the angle of a kink, 30°: a facet rises in front of another one, a joint is blunt up to
-/// it.
-pub(crate) const KINK_SINE: f64 = 0.5;
-/// Difference between a depth and that from the extension of a facet past a joint that is no
-/// corner.
-pub const BESIDE_KINK: f64 = 1.0 - KINK;
-/// Angle of a body at a node, 30°, below which a node on the boundary cannot be told from one
-/// inside a fold.
-pub(crate) const SHARPEST: f64 = std::f64::consts::PI / 6.0;
-/// Solid angle of a body at a node below which a node on the boundary cannot be told from one
-/// inside a fold in space.
-pub(crate) const SHARPEST_SOLID: f64 = 0.2;
-/// Cosine of the angle, 10°, up to which two facets, or two normals, count as parallel.
-pub(crate) const PARALLEL: f64 = 0.985;
-/// Sine of the angle, 10°, up to which facets count as parallel: depth, relative to the distance
-/// from the end of a side, up to which a node past that end has not crossed the facet.
-pub(crate) const PARALLEL_SINE: f64 = 0.17;
-/// Cosine of the angle, 3°, between two facets above which a part touches one of them: the rows of
-/// both would nearly be the same, and the gap differs by r (1 − cos 3°).
-pub(crate) const SAME_NORMAL: f64 = 0.9986;
-/// Cosine of the angle between two outward normals, 60°, above which they are alike: gaps depend on
-/// each other, and two places are not the faces of one wall.
-pub(crate) const ALIKE: f64 = 0.5;
-/// Cosine of the angle between two outward normals, 120°, below which two places of one body face
-/// each other.
-pub(crate) const FACING: f64 = -ALIKE;
-/// Cosine of the angle between two normals, 135°, below which they oppose each other.
-pub(crate) const OPPOSED: f64 = -0.7;
-/// Distance of −n from the cone of the normals at a node above which none opposes the facet: within
-/// 11° of perpendicular.
-pub(crate) const ASIDE: f64 = 0.98;
-/// Cosine of the angle, 11° from perpendicular, at which a normal still opposes the facet.
-pub(crate) const ASIDE_COSINE: f64 = 0.2;
-/// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet.
-pub(crate) const FOLDED_BACK: f64 = 80.0 * std::f64::consts::PI / 180.0;
-/// Value of 1 + n₀·n, for the last normal n₀ and the present one n, below which new tangents are
-/// chosen.
-pub(crate) const TANGENTS_TURNED: f64 = 0.1;
-/// Cosines of the angles from the opposite direction up to which a point of a pressure field faces
-/// the primary, and beyond which it does not: 60° and 75°. Where surfaces meet at a larger angle,
-/// one of them ends in a corner, which has a row of its own.
-pub(crate) const MORTAR_FACES: [f64; 2] = [0.5, 0.258_819_045_102_520_74];
+/// Kink from which on a joint is a corner, and an edge is sharp, and a facet rises in front of
+/// another one. A regular polygon of twelve sides has corners.
+pub(crate) const KINK: Angle = Angle::degrees(30.0);
+/// Angle up to which two facets, or two normals, count as parallel.
+pub(crate) const PARALLEL: Angle = Angle::degrees(10.0);
+/// Angle between two facets up to which a part touches one of them: the rows of both would nearly
+/// be the same, and the gap differs by r (1 − cos 3°).
+pub(crate) const SAME_NORMAL: Angle = Angle::degrees(3.0);
+/// Angle between two outward normals up to which they are alike: gaps depend on each other, and two
+/// places are not the faces of one wall.
+pub(crate) const ALIKE: Angle = Angle::degrees(60.0);
+/// Deviation of two outward normals from opposite directions up to which they oppose each other.
+pub(crate) const OPPOSED: Angle = Angle::degrees(45.0);
 /// Sine of the angle between edges below which they form no pair.
 pub(crate) const EDGES_CROSS: f64 = 0.1;
 /// Sine of the angle by which the normal of a new pair of edges lies between the facets' normals at
@@ -85,6 +57,30 @@ pub(crate) const EDGES_BETWEEN: f64 = -0.02;
 /// facets' normals: an edge that lies on a facet is constrained at its end by the edge of the
 /// facet.
 pub(crate) const EDGES_OUTSIDE: f64 = -0.4;
+
+/// Difference between a depth and that from the extension of a facet past a joint that is no
+/// corner; and value of 1 + n₀·n, for the last normal n₀ and the present one n, below which new
+/// tangents are chosen.
+pub const BESIDE_KINK: f64 = 1.0 - KINK.cosine;
+/// Angle of a body at a node below which a node on the boundary cannot be told from one inside a
+/// fold.
+pub(crate) const SHARPEST: f64 = KINK.radians;
+/// Solid angle of a body at a node below which a node on the boundary cannot be told from one
+/// inside a fold in space: that of a cone with this opening.
+pub(crate) const SHARPEST_SOLID: f64 = 2.0 * PI * (1.0 - KINK.half().cosine);
+/// |η| up to which a closest point of a pressure field is followed: at a kink, a point as far away
+/// as the facet is long has its closest point 1 + 2 tan 15° from the middle.
+pub(crate) const MORTAR_BEYOND: f64 = 1.0 + 2.0 * KINK.half().sine / KINK.half().cosine;
+/// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet:
+/// all but parallel facets that face the same way.
+pub(crate) const FOLDED_BACK: f64 = PARALLEL.complement().radians;
+/// Cosine of the angle between two outward normals below which two places of one body face each
+/// other.
+pub(crate) const FACING: f64 = -ALIKE.cosine;
+/// Cosines of the angles from the opposite direction up to which a point of a pressure field faces
+/// the primary, and beyond which it does not: 60°, and halfway from there to a right angle. Where
+/// surfaces meet at a larger angle, one of them ends in a corner, which has a row of its own.
+pub(crate) const MORTAR_FACES: [f64; 2] = [ALIKE.cosine, ALIKE.complement().half().sine];
 
 // ---- Ends of facets
 
@@ -101,8 +97,8 @@ pub(crate) const REACH_XI: f64 = 1.0 + EXTENDED;
 /// |ξ| of a pair that is handed over.
 pub(crate) const HAND_OVER_XI: f64 = 1.0 + PAST_END;
 /// Distance past an end beyond which a pair is handed back to the facet that it came from before
-/// Newton's method has converged.
-pub(crate) const HAND_BACK: f64 = 0.1;
+/// Newton's method has converged: halfway to where facets end that are extrapolated.
+pub(crate) const HAND_BACK: f64 = 0.5 * EXTENDED;
 /// |ξ| of a pair that is handed back.
 pub(crate) const HAND_BACK_XI: f64 = 1.0 + HAND_BACK;
 /// Distance past a corner or the end of a side, in the plane, above which a closest point is past
@@ -118,18 +114,17 @@ pub(crate) const NEAR_END_SPACE: f64 = 0.5 * PAST_END;
 pub(crate) const WANDER: f64 = 2.0;
 /// |ξ| up to which it is followed.
 pub(crate) const WANDER_XI: f64 = 1.0 + 2.0 * WANDER;
-/// |η| up to which a closest point of a pressure field is followed: at a kink of 30°, a point as far
-/// away as the facet is long has its closest point 1 + 2 tan 15° from the middle.
-pub(crate) const MORTAR_BEYOND: f64 = 1.6;
 /// Share of the area of a multiplier that must face the primary for a pressure of its own.
 pub(crate) const MORTAR_COVERED: f64 = 0.05;
 /// Second derivative of half the squared distance of a centre from a facet, over that from a
 /// straight one, below which the facet follows the part.
 pub(crate) const FOLLOWS: f64 = 0.5;
-/// Distance 1 − |ξ| from a corner that the contact point of a new pair of edges has at least.
-pub(crate) const EDGES_CORNER: f64 = 0.04;
-/// Distance 1 − |ξ| from a corner, on both edges, up to which two edges meet at their corners.
-pub(crate) const EDGES_NEAR_CORNER: f64 = 0.2;
+/// Distance 1 − |ξ| from a corner that the contact point of a new pair of edges has at least: such
+/// a point is clearly on this side of [`PAST_END`].
+pub(crate) const EDGES_CORNER: f64 = 2.0 * PAST_END;
+/// Distance 1 − |ξ| from a corner, on both edges, up to which two edges meet at their corners: as
+/// far as facets are extrapolated.
+pub(crate) const EDGES_NEAR_CORNER: f64 = EXTENDED;
 /// Distance between the contact points of edges that continue each other, below which one pair
 /// constrains both if their normals are parallel.
 pub(crate) const EDGES_TOGETHER: f64 = 0.1;
@@ -158,17 +153,17 @@ pub(crate) const WALL: f64 = 3.0;
 
 // ---- Search
 
-/// Share of a depth up to which motion decides; round-off is far below the rest.
-pub(crate) const SURE: f64 = 0.99;
-
-/// Distance up to which another facet is near, and past an edge up to which the search for a point
-/// on a facet may go.
-pub(crate) const NEAR_FACET: f64 = 0.25;
 /// Margin around the path of a node in the search for facets, relative to the path.
 pub(crate) const PATH_MARGIN: f64 = 0.1;
 /// Margin around the path of a facet within which a node is tracked, relative to the path: before
 /// contact, and as far as facets are extrapolated.
 pub(crate) const WATCHED: f64 = 0.35;
+
 /// Margin around the path of a facet within which a node is tracked, relative to the path, where
 /// only contacts within the step matter.
-pub(crate) const WITHIN_STEP: f64 = 0.01;
+pub(crate) const WITHIN_STEP: f64 = SHALLOW;
+/// Share of a depth up to which motion decides; round-off is far below the rest.
+pub(crate) const SURE: f64 = 1.0 - SHALLOW;
+/// Distance up to which another facet is near, and past an edge up to which the search for a point
+/// on a facet may go.
+pub(crate) const NEAR_FACET: f64 = EXTENDED;

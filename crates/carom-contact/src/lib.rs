@@ -2,6 +2,7 @@
 //! positions, independent of time integration and matrices.
 
 mod active_set;
+mod angle;
 pub mod constants;
 mod depth;
 mod discrete_gradient;

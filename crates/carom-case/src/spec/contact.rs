@@ -170,8 +170,7 @@ pub struct FrictionSpec {
     /// Coefficient of Coulomb friction μ, for the slip of the secondary side on the primary one: a
     /// node sticks while its tangential force is less than μ times its normal force, and otherwise
     /// slips against exactly this force. A number, or a formula of the node's reference position
-    /// and time. In space sharp edges on sharp edges have no friction. 0: no friction. Default: no
-    /// friction, or that of `shear`. Dimensions 2 and 3.
+    /// and time. 0: no friction. Default: no friction, or that of `shear`. Dimensions 2 and 3.
     #[key(Formula(IN_SPACE_AND_TIME), example = "0.3")]
     pub mu: Option<FormulaSpec>,
     /// Coefficient of friction of a node that slips, at most `mu`, which is then that of a node

@@ -10,7 +10,7 @@ use super::opposed::presses;
 use super::swept::SweptTest;
 use super::trajectory::crossing;
 use super::way::Met;
-use crate::constants::{AT_JOINT, FLUSH, KINK_SINE, MEETS, NEAR_END, PARALLEL_SINE, REACH_XI};
+use crate::constants::{AT_JOINT, FLUSH, KINK, MEETS, NEAR_END, PARALLEL, REACH_XI};
 use crate::kinematics::Kinematics;
 use crate::pair::Pair;
 use crate::places::Places;
@@ -182,9 +182,9 @@ impl NodeToFacet {
             xi.is_some_and(|xi| own.gap(facet, xi, corner, y).abs() <= near)
         };
         if is_near_end(xi) {
-            !presses(&normals, normal, PARALLEL_SINE)
+            !presses(&normals, normal, PARALLEL.sine)
         } else {
-            !presses(&normals, normal, KINK_SINE) && around.iter().any(meets)
+            !presses(&normals, normal, KINK.sine) && around.iter().any(meets)
         }
     }
 
@@ -230,7 +230,7 @@ impl NodeToFacet {
             let past = NEAR_END * length;
             let enters = !self.primary.faces_nothing(facet, xi, now)
                 && self.gap(node, facet, xi, now) + slack < 0.0
-                && self.gap(node, facet, start, before) + slack >= -PARALLEL_SINE * past;
+                && self.gap(node, facet, start, before) + slack >= -PARALLEL.sine * past;
             enters.then_some(Reached { facet, xi, crossed: false })
         })
     }

@@ -108,10 +108,6 @@ impl Kinematics for Combined {
         nodes
     }
 
-    fn rubbing(&self) -> usize {
-        self.parts.iter().map(|part| part.rubbing()).sum()
-    }
-
     fn allowed(&self, node: usize) -> f64 {
         let (part, node) = self.of(node);
         part.allowed(node)

@@ -31,7 +31,7 @@ use std::ops::Range;
 
 use super::facets::Facets;
 use super::surface::Surface;
-use crate::constants::{FACING, FOLDED_BACK};
+use crate::constants::{FACING, FOLDED_BACK, MEETS};
 use crate::places::Places;
 
 /// The order of the facets of a body along the loops of its boundary, and its corners.
@@ -283,7 +283,7 @@ impl Turns {
             let ahead = on[k][0].min(least + total) - start[k];
             let behind = arriving - largest.max(on[k][1] - total);
             // Of equals the first.
-            if ahead.min(behind) > best.1 + 1e-6 {
+            if ahead.min(behind) > best.1 + MEETS {
                 best = (k, ahead.min(behind));
             }
             least = least.min(start[k]).min(end(k));

@@ -136,12 +136,6 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
         self.secondary().len()
     }
 
-    /// Number of the first entries of [`secondary`](Self::secondary) that can have friction: all
-    /// but sharp edges and their points.
-    fn rubbing(&self) -> usize {
-        self.secondary().len()
-    }
-
     /// Depth to which a secondary node, given by index, may penetrate without contact; its gap is
     /// larger by that depth.
     fn allowed(&self, _node: usize) -> f64 {

@@ -136,7 +136,7 @@ impl NodeToObstacle {
         let is_flat = here.bend == 0.0;
         let turns = |piece: &usize| {
             let there = self.shape.near(*piece, local.at);
-            there.is_some_and(|there| !is_flat || dot(here.normal, there.normal) < KINK)
+            there.is_some_and(|there| !is_flat || dot(here.normal, there.normal) < KINK.cosine)
         };
         let mut across = over.into_iter().filter(turns).peekable();
         across.peek()?;
@@ -231,7 +231,7 @@ impl NodeToObstacle {
         let is_inside = |piece: usize| self.shape.near(piece, at).is_some_and(|near| near.gap < 0.0);
         for pair in held.iter().filter(|pair| pair.active || is_inside(pair.facet)) {
             for wall in self.shape.walls(pair.facet, at) {
-                let turns = |other: &Pair| dot(normal(other.facet), normal(wall)) < KINK;
+                let turns = |other: &Pair| dot(normal(other.facet), normal(wall)) < KINK.cosine;
                 if held.iter().chain(&walls).all(turns) {
                     walls.push(Pair::open(pair.node, wall, 0.0));
                 }

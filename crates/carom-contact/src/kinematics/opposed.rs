@@ -14,7 +14,7 @@
 
 use carom_algebra::Vector;
 
-use crate::constants::{ASIDE, ASIDE_COSINE, FLUSH, OPPOSED};
+use crate::constants::{FLUSH, OPPOSED, PARALLEL};
 
 /// Most sweeps over the λᵢ.
 const SWEEPS: usize = 500;
@@ -54,7 +54,7 @@ pub(super) fn is_left<const D: usize, I: Iterator<Item = (Vector<D>, f64)>>(
 ) -> bool {
     let most_opposed = |n: Vector<D>| normals.clone().map(|own| own.dot(&n)).fold(f64::INFINITY, f64::min);
     // An nᵢ that opposes the facet presses on it by itself.
-    most_opposed(n) > -ASIDE_COSINE
-        && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(other) < OPPOSED)
-        && !presses(&normals.clone().collect::<Vec<_>>(), n, ASIDE)
+    most_opposed(n) > -PARALLEL.sine
+        && beside().any(|(other, length)| height <= FLUSH * length && most_opposed(other) < -OPPOSED.cosine)
+        && !presses(&normals.clone().collect::<Vec<_>>(), n, PARALLEL.cosine)
 }

@@ -38,5 +38,5 @@ impl Outward {
 
 /// Whether one of the vectors `outward` is opposite to a unit normal to within 10°.
 pub(super) fn is_opposed(normal: Point, outward: &[Point]) -> bool {
-    outward.iter().any(|own| dot(*own, normal) < -PARALLEL * dot(*own, *own).sqrt())
+    outward.iter().any(|own| dot(*own, normal) < -PARALLEL.cosine * dot(*own, *own).sqrt())
 }

@@ -30,7 +30,7 @@ use carom_algebra::Vector;
 
 use super::facets::{Facets, OnFacet};
 use super::space::cross;
-use crate::constants::{KINK_SINE, PARALLEL};
+use crate::constants::{KINK, PARALLEL};
 
 /// Nodes of a side with the depth that each may have without contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,7 +116,7 @@ impl Corners {
             let near = self.near * primary.length(facet, y);
             // Without regard to their depth, which may be large before convergence.
             let meets = |other: usize| cross(offset::<D>(other, corner.node, y), normal).norm() < near;
-            own.dot(&normal) < -PARALLEL
+            own.dot(&normal) < -PARALLEL.cosine
                 && faced.iter().any(|&other| meets(other) && !is_in_notch(secondary, other, normal, y))
         })
     }
@@ -128,7 +128,7 @@ fn is_in_notch<const D: usize>(side: &impl Facets<D>, node: usize, normal: Vecto
     side.facets_at(node).iter().any(|&OnFacet { facet, .. }| {
         let height = |&other: &usize| offset::<D>(node, other, y).dot(&normal);
         let highest = side.nodes_of(facet).iter().map(height).fold(0.0, f64::max);
-        highest > KINK_SINE * side.length(facet, y)
+        highest > KINK.sine * side.length(facet, y)
     })
 }
 

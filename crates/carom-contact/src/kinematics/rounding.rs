@@ -75,7 +75,7 @@ fn smooth_neighbours<const D: usize>(
     y: &[f64],
 ) -> impl Iterator<Item = usize> {
     let normal = side.normal(facet, [0.0; 2], y);
-    side.beside(facet).filter(move |&other| side.normal(other, [0.0; 2], y).dot(&normal) > KINK)
+    side.beside(facet).filter(move |&other| side.normal(other, [0.0; 2], y).dot(&normal) > KINK.cosine)
 }
 
 fn curvature<const D: usize>(side: &impl Facets<D>, facet: usize, y: &[f64]) -> Curvature {

@@ -177,18 +177,18 @@ impl Surface {
     pub(crate) fn is_corner(&self, facet: usize, next: usize, y: Places) -> bool {
         let kink = self.kink(facet, next, y);
         // With the body on the left, a convex joint turns left.
-        kink.sine > 0.0 && kink.cosine < KINK
+        kink.sine > 0.0 && kink.cosine < KINK.cosine
     }
 
     /// Whether the joint of a facet and the one that follows it is a concave corner.
     pub(crate) fn is_notch(&self, facet: usize, next: usize, y: Places) -> bool {
         let kink = self.kink(facet, next, y);
-        kink.sine < 0.0 && kink.cosine < KINK
+        kink.sine < 0.0 && kink.cosine < KINK.cosine
     }
 
     /// Whether the joint of a facet and the one that follows it is smooth, but for a small kink.
     pub(crate) fn is_blunt(&self, facet: usize, next: usize, y: Places) -> bool {
-        self.kink(facet, next, y).cosine > KINK
+        self.kink(facet, next, y).cosine > KINK.cosine
     }
 
     /// The facets next to a facet at a convex corner.
@@ -213,7 +213,7 @@ impl Surface {
         let mirrored = |tangent, along: Vector<2>| reflected(tangent, along * along.norm().recip());
         let is_convex = || {
             let size = here.norm() * there.norm();
-            here.dot(&there) < KINK * size && here[0] * there[1] > here[1] * there[0]
+            here.dot(&there) < KINK.cosine * size && here[0] * there[1] > here[1] * there[0]
         };
         let is_continued = |facet: usize| match self.continuation(facet) {
             Continuation::None => false,

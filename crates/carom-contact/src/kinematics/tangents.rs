@@ -11,7 +11,7 @@
 use carom_algebra::Vector;
 
 use super::space::cross;
-use crate::constants::TANGENTS_TURNED;
+use crate::constants::BESIDE_KINK;
 
 /// The unit tangents at a normal, turned from the last ones of the pair; chosen freely if those are
 /// zero.
@@ -19,7 +19,7 @@ pub(super) fn tangents(normal: Vector<3>, last: [[f64; 3]; 2]) -> [Vector<3>; 2]
     let [first, second] = last.map(Vector);
     let before = cross(first, second);
     let turn = 1.0 + before.dot(&normal);
-    let first = if before.norm() > 0.5 && turn > TANGENTS_TURNED {
+    let first = if before.norm() > 0.5 && turn > BESIDE_KINK {
         first + (before + normal) * (-first.dot(&normal) / turn)
     } else {
         let axis = (1..3).fold(0, |least, i| if normal[i].abs() < normal[least].abs() { i } else { least });

@@ -168,7 +168,7 @@ impl TipToFacet {
         let Some([first, last]) = self.tips[tip].normals else { return Some(false) };
         let normal = self.local([center[0], center[1], 0.0], y).back([-outward[0], -outward[1], 0.0]);
         let cross = |a: Point, b: Point| a[0] * b[1] - a[1] * b[0];
-        let is_along = |own: Point| dot(own, normal) > PARALLEL * dot(normal, normal).sqrt();
+        let is_along = |own: Point| dot(own, normal) > PARALLEL.cosine * dot(normal, normal).sqrt();
         let is_parallel = is_along(first) || is_along(last);
         let is_between = cross(first, normal) >= 0.0 && cross(normal, last) >= 0.0;
         let faces = is_parallel || is_between && dot(first, normal) + dot(last, normal) > 0.0;
@@ -219,7 +219,7 @@ impl TipToFacet {
             let Some(xi) = self.side.facet(facet).closest_point(places, center, 1.0) else { continue };
             let other = Pair::open(pair.node, facet, xi);
             let gap = self.centers.gap_of(&other, places);
-            let turns = gap.at.normal.dot(&own) < SAME_NORMAL;
+            let turns = gap.at.normal.dot(&own) < SAME_NORMAL.cosine;
             let enters = turns && gap.distance > 0.0 && gap.distance + self.centers.slack(pair.node) < 0.0;
             if enters && !known.iter().chain(found.iter()).any(is_same) && self.acts(&other, y) {
                 found.push(other);

@@ -121,6 +121,35 @@ fn force_and_moment_balance_and_rigid_motions_do_not_slip() {
     }
 }
 
+#[test]
+fn the_derivative_of_the_slip_agrees_with_differences() {
+    for shape in SHAPES {
+        let (contact, y) = scene(shape, 0.1, bent);
+        let (_, mut pair) = measured(&contact, &y);
+        let mut slips = Rows::new(3);
+        contact.slip(&pair, &y, &[], &mut slips).unwrap();
+        pair.tangential.tangents = slips.tangents(0);
+        let nodes = slips.row(0).nodes.to_vec();
+        let count = 3 * nodes.len();
+        for tangent in 0..2 {
+            let mut matrix = vec![0.0; count * count];
+            contact.slip_derivative_into(&pair, &y, &[], tangent, &mut matrix);
+            let row = |x: &[f64]| {
+                let mut all = y.clone();
+                for (node, x) in nodes.iter().zip(x.as_chunks::<3>().0) {
+                    all[3 * node..3 * node + 3].copy_from_slice(x);
+                }
+                let mut rows = Rows::new(3);
+                contact.slip(&pair, &all, &[], &mut rows).unwrap();
+                rows.row(tangent).gradient.to_vec()
+            };
+            let start: Vec<f64> = nodes.iter().flat_map(|n| [0, 1, 2].map(|i| y[3 * n + i])).collect();
+            let error = jacobian_error(&start, 1e-3, row, &matrix);
+            assert!(error < 1e-8, "{shape:?} {tangent}: {error:e}");
+        }
+    }
+}
+
 /// No node enters the facet: the ends of the edge are past its ends.
 #[test]
 fn points_that_sink_by_more_than_their_depth_are_held() {

@@ -152,6 +152,45 @@ fn force_and_moment_balance_and_rigid_motions_neither_open_nor_slip() {
     }
 }
 
+/// Where the edges touch: the row of the slip varies with the contact points and the normal.
+#[test]
+fn the_derivative_of_the_slip_agrees_with_differences() {
+    for shape in SHAPES {
+        let (contact, mut y) = roofs(shape, 1, 0.15, bent);
+        let (rows, _) = measured(&contact, &y);
+        let normal = rows.row(0).normal();
+        let gap = rows.row(0).gap;
+        let upper = y.len() / 2;
+        y[upper..]
+            .as_chunks_mut::<3>()
+            .0
+            .iter_mut()
+            .for_each(|x| (0..3).for_each(|i| x[i] -= gap * normal[i]));
+        let (rows, mut pair) = measured(&contact, &y);
+        assert!(rows.row(0).gap.abs() < 1e-14);
+        let mut slips = Rows::new(3);
+        contact.slip(&pair, &y, &[], &mut slips).unwrap();
+        pair.tangential.tangents = slips.tangents(0);
+        let nodes = slips.row(0).nodes.to_vec();
+        let count = 3 * nodes.len();
+        for tangent in 0..2 {
+            let mut matrix = vec![0.0; count * count];
+            contact.slip_derivative_into(&pair, &y, &[], tangent, &mut matrix);
+            let row = |x: &[f64]| {
+                let mut all = y.clone();
+                let of_node = |k: usize| &x[3 * k..3 * k + 3];
+                nodes.iter().enumerate().for_each(|(k, n)| all[3 * n..3 * n + 3].copy_from_slice(of_node(k)));
+                let mut rows = Rows::new(3);
+                contact.slip(&pair, &all, &[], &mut rows).unwrap();
+                rows.row(tangent).gradient.to_vec()
+            };
+            let start: Vec<f64> = nodes.iter().flat_map(|n| [0, 1, 2].map(|i| y[3 * n + i])).collect();
+            let error = jacobian_error(&start, 1e-3, row, &matrix);
+            assert!(error < 1e-8, "{shape:?} {tangent}: {error:e}");
+        }
+    }
+}
+
 #[test]
 fn the_discrete_gradient_does_the_work_of_the_gap_without_force_or_moment() {
     let (contact, start) = roofs(FacetShape::Q9, 1, 0.05, bent);

@@ -370,12 +370,6 @@ impl Equations<'_> {
         }
         let part = self.slip_into(contact, pair, gap, middle, &at.increment, slips)?;
         let slip = slip_of(slips, p);
-        if self.laws[contact][pair.node].is_none()
-            && pair.node >= self.model.contacts[contact].kinematics.rubbing()
-        {
-            // Edges have neither friction nor its springs.
-            pair.tangential.friction_state = FrictionState::FREE;
-        }
         if begins {
             self.begin_spring(contact, pair, slip, part);
         }

@@ -25,8 +25,6 @@ pub struct Friction {
     /// Largest traction of the nodes of the secondary side, by their global numbers, between which
     /// the row of a part of an obstacle lies.
     pub limits_of_nodes: HashMap<usize, f64>,
-    /// Number of edges after these nodes, which have no friction.
-    pub edges: usize,
 }
 
 impl Friction {
@@ -39,18 +37,18 @@ impl Friction {
             places: vec![Vec::new(); nodes],
             limits: Vec::new(),
             limits_of_nodes: HashMap::new(),
-            edges: 0,
         }
     }
 
-    /// Whether a node has friction: it is no edge, nor a coefficient of the pressure in a plane of
-    /// symmetry, whose limit is zero.
+    /// Whether a node has friction: it is no coefficient of the pressure in a plane of symmetry,
+    /// whose limit is zero.
     pub fn acts_on(&self, node: usize) -> bool {
-        node < self.places.len() && self.limits.get(node) != Some(&0.0)
+        self.limits.get(node) != Some(&0.0)
     }
 
-    /// The law of every secondary node at a time, and of the edges that follow them. A part of an
-    /// obstacle has that of the point where its pair is, with the reference positions of all nodes.
+    /// The law of every secondary node at a time, and of what follows them: a part of an obstacle,
+    /// an edge and a point of an edge have that of the point where their pair is, with the
+    /// reference positions of all nodes.
     ///
     /// # Errors
     /// A coefficient that is negative or not finite.
@@ -60,19 +58,17 @@ impl Friction {
         (kinematics, pairs): (&dyn Kinematics, &[Pair]),
         (reference, dimension): (&[f64], usize),
     ) -> Result<Vec<Law>, NoValue> {
-        let none = Law { stick: 0.0, slip: 0.0, decay: 0.0, limit: f64::INFINITY };
         let limit = |node| self.limit(node);
         let of_nodes = self.places.iter().enumerate();
         let mut laws: Vec<Law> =
             of_nodes.map(|(node, place)| self.law(place, limit(node), time)).collect::<Result<_, _>>()?;
         if kinematics.nodes() < self.places.len() {
-            for pair in pairs.iter().filter(|pair| pair.node < self.places.len()) {
+            for pair in pairs {
                 if let Some(law) = self.law_between(time, (kinematics, pair), (reference, dimension))? {
                     laws[pair.node] = law;
                 }
             }
         }
-        laws.extend(std::iter::repeat_n(none, self.edges));
         Ok(laws)
     }
 
@@ -89,8 +85,9 @@ impl Friction {
         let Some(point) = kinematics.between_nodes(pair) else { return Ok(None) };
         let own = self.limit(pair.node);
         let of_node = |node| self.limits_of_nodes.get(&node).copied().unwrap_or(0.0);
-        // A limit of zero is that of a plane of symmetry.
-        let has_own = self.limits_of_nodes.is_empty() || own == 0.0;
+        // A limit of zero is that of a plane of symmetry. Nodes of the primary side have none.
+        let is_of_side = |node: &usize| self.limits_of_nodes.contains_key(node);
+        let has_own = own == 0.0 || !point.nodes.iter().any(is_of_side);
         let limit = if has_own { own } else { point.mean(of_node) };
         self.law(&point.place(reference, dimension), limit, time).map(Some)
     }

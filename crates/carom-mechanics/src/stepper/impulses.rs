@@ -25,8 +25,8 @@ use crate::state::State;
 use crate::workspace::Workspace;
 
 /// A predicted gap of at most this fraction of L is a tie, which round-off does not decide: it is
-/// open, as the published results of these schemes require, unless it has been closed since the
-/// start of the run. Otherwise a body pressed at rest would spring off.
+/// open, as the published results of these schemes require, unless what touches there does not
+/// move. Otherwise a body pressed at rest would spring off.
 pub(super) const TIE: f64 = 1e-10;
 
 /// The contacts of a step, and their impulses.
@@ -105,14 +105,14 @@ impl Impulses {
     ) -> Result<Self, Rejected> {
         let mut measured = Vec::new();
         measure_into(model, predicted, pairings, &mut measured)?;
+        let path: Vec<f64> = predicted.iter().zip(&state.y).map(|(to, from)| to - from).collect();
+        let tie = TIE * model.scale;
         for (pairing, rows) in pairings.iter_mut().zip(&measured) {
             for (pair, row) in pairing.pairs.iter_mut().zip(rows.iter()) {
-                let tie = if pair.rests { TIE } else { -TIE };
-                pair.active = row.gap < tie * model.scale;
-                pair.rests &= pair.active;
+                let rests = row.along(&path).abs() <= tie;
+                pair.active = row.gap < if rests { tie } else { -tie };
             }
         }
-        let path: Vec<f64> = predicted.iter().zip(&state.y).map(|(to, from)| to - from).collect();
         let (places, stuck): (Vec<_>, Vec<_>) =
             active(pairings).partition(|&(k, p)| moves(model, measured[k].row(p)));
         for (k, p) in stuck {

@@ -1,32 +1,39 @@
-//! Metrics after the contact force and the columns of probes have been averaged over a short time,
-//! 1/16 of the first contact episode. Extremes and roughness of a smooth signal
-//! hardly change by that. Behind a jump, such as a wave front, a computed signal overshoots by a
-//! fraction of the jump on every mesh (Gibbs), so that these metrics converge under refinement, but
-//! to wrong values; averaging removes most of the overshoot. What it changes is therefore a part of
-//! their uncertainty.
+//! Metrics after the contact force and the columns of probes have been averaged over a short time:
+//! twice the window over which a study averages, by default 1/8 of the first contact episode, or of
+//! the record without an episode that ends. Extremes and roughness of a smooth signal hardly change
+//! by that. Behind a jump, such as a wave front, a computed signal overshoots by a fraction of the
+//! jump on every mesh (Gibbs), so that these metrics converge under refinement, but to wrong
+//! values; averaging removes most of the overshoot. What it changes is therefore a part of their
+//! uncertainty, and of that of largest means over the window itself.
 
 use super::definition::Metric;
-use super::episode::first_episode;
+use super::episode::{WINDOWS, first_episode};
 use super::evaluated::{of_columns, of_history, probe_columns};
 use super::given::{Given, is_of_itself};
 use super::samples::{at, integral};
 use crate::{History, Run};
 
-/// Metrics of the contact force that depend on single rows.
-pub const OF_FORCE: [&str; 3] = ["peak_force", "force_roughness", "force_high_frequency"];
-/// Metrics of a column that depend on single rows.
-pub const OF_COLUMN: [&str; 4] = ["min", "max", "roughness", "high_frequency"];
+/// Metrics of the contact force that depend on few rows.
+pub const OF_FORCE: [&str; 4] = ["peak_force", "peak_mean_force", "force_roughness", "force_high_frequency"];
+/// Metrics of a column that depend on few rows.
+pub const OF_COLUMN: [&str; 5] = ["min", "max", "roughness", "peak_mean", "high_frequency"];
 
-/// The metrics that depend on single rows, of the averaged record; empty without a contact episode.
-pub fn of_averages(run: &Run) -> Vec<Metric> {
+/// The metrics that depend on few rows, of the averaged record; `window`: that of the study, if it
+/// is given.
+pub fn of_averages(run: &Run, window: Option<f64>) -> Vec<Metric> {
     let history = &run.history;
-    let window = first_episode(history).and_then(|episode| episode.window(history.times()));
-    let Some(window) = window else { return Vec::new() };
+    let times = history.times();
+    let of_contact = || first_episode(history).and_then(|episode| episode.window(times));
+    let of_record =
+        || (times.last().copied().unwrap_or(0.0) - times.first().copied().unwrap_or(0.0)) / WINDOWS;
+    let window = 2.0 * window.or_else(of_contact).unwrap_or_else(of_record);
     let probes = probe_columns(run);
     let contacts = &run.manifest.facts.contacts;
     let is_force = |name: &str| {
         let of_contact = name.rsplit_once(".force_").map(|(contact, _)| contact);
-        name.starts_with("contact_force_") || contacts.iter().any(|of| of_contact == Some(&of.name))
+        // Means of the force come from its impulse.
+        let is_of_all = ["contact_force_", "contact_impulse_"].iter().any(|of| name.starts_with(of));
+        is_of_all || contacts.iter().any(|of| of_contact == Some(&of.name))
     };
     let averaged = averaged(history, window, |name| is_force(name) || probes.contains(&name));
     let mut metrics: Vec<Metric> = of_history(&Given::of_changed(run, &averaged)).collect();

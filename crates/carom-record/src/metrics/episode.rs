@@ -17,7 +17,7 @@ pub struct Episode {
 /// Difference of times, relative to the last one, that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 /// Number of windows per episode over which peaks are averaged.
-const WINDOWS: f64 = 16.0;
+pub(super) const WINDOWS: f64 = 16.0;
 
 impl Episode {
     /// Whether a row at a time is in contact.

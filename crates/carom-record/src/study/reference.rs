@@ -6,7 +6,8 @@
 //!             refinement (convergence.rs) of a member, the median over the members, at least the distance to a
 //!             second scheme and the change of the last halving of the step on the same mesh; plus the largest
 //!             distance of a member from the median, plus for each event the step of the level before over the
-//!             number of phases, or a row if it is longer, plus 5/4 of what averaging over a short time changes, for extremes
+//!             number of phases, or a row if it is longer, plus 5/4 of what averaging over a short time changes, for
+//!             extremes and largest means
 //!             (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in step and refinement
 //! exact       the formulas of [exact] of each arm, uncertainty 0, and the metrics that can be computed from these

@@ -116,7 +116,7 @@ impl StudyManifest {
                 if let Some(run) = self.finished(directory, self.run(run))? {
                     striker = striker.or_else(|| metrics::striker(&run).map(str::to_owned));
                     if members.is_empty() && Some(&i) == arms.last() {
-                        averaged = metrics::of_averages(&run);
+                        averaged = metrics::of_averages(&run, self.window);
                         if self.window.is_none() {
                             window = metrics::window(&run.history);
                         }

@@ -89,9 +89,8 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         Enforcement::Multiplier => Vec::new(),
         _ => spread(&*kinematics, stiffnesses(kinematics.secondary(), parts)),
     };
-    let rubbing = &kinematics.secondary()[..kinematics.rubbing()];
     let stick = spec.friction.stick_stiffness.unwrap_or(spec.stiffness);
-    let mut friction = friction(case, spec, rubbing, reference, &secondary)?;
+    let mut friction = friction(case, spec, kinematics.secondary(), reference, &secondary)?;
     if let Some(friction) = &mut friction {
         if let Some(shear) = spec.friction.shear {
             // Coefficients of a pressure have the whole area, which leaves none for single nodes.
@@ -101,14 +100,14 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
                 *limit = kinematics.area(node).map_or(of_node, |area| shear * case.thickness * area);
             }
         }
-        for node in 0..rubbing.len() {
+        let count = kinematics.secondary().len();
+        for node in 0..count {
             let in_plane = kinematics.in_plane_of_symmetry(node);
             if !in_plane.is_empty() && !in_plane.iter().any(|&node| bodies.moves(node)) {
-                friction.limits.resize(rubbing.len(), f64::INFINITY);
+                friction.limits.resize(count, f64::INFINITY);
                 friction.limits[node] = 0.0;
             }
         }
-        friction.edges = kinematics.secondary().len() - rubbing.len();
     }
     Ok(Contact {
         name: spec.name.clone(),
@@ -264,7 +263,6 @@ fn friction(
         places: nodes.iter().map(|node| reference[node * d..(node + 1) * d].to_vec()).collect(),
         limits: limits.unwrap_or_default(),
         limits_of_nodes: limits_of_nodes.unwrap_or_default(),
-        edges: 0,
     }))
 }
 

@@ -129,7 +129,7 @@ fn thrown(bar: Bar, gap: f64, v: f64) -> Problem {
     ][dimension - 1];
     let probes = format!(
         "[[probe]]\nname = \"far\"\nbody = \"bar\"\nat = {}\nrecord = [\"u{axis}\"]\n\
-         [[probe]]\nname = \"mid\"\nbody = \"bar\"\nat = {}\nrecord = [\"sigma_{axis}{axis}\"]\n",
+         [[probe]]\nname = \"mid\"\nbody = \"bar\"\nat = {}\nrecord = [\"sigma_{axis}{axis}\", \"det_f\"]\n",
         on_axis(dimension, gap + length),
         on_axis(dimension, gap + length / 2.0)
     );
@@ -158,12 +158,41 @@ fn thrown(bar: Bar, gap: f64, v: f64) -> Problem {
             (["impulse_x", "impulse_y", "impulse_z"][dimension - 1], 2.0 * force * crossing),
             ("peak_mean_force", force),
             ("restitution", 1.0),
+            (["mid.sigma_xx:min", "mid.sigma_yy:min", "mid.sigma_zz:min"][dimension - 1], -force),
+            (
+                ["mid.sigma_xx:peak_mean", "mid.sigma_yy:peak_mean", "mid.sigma_zz:peak_mean"][dimension - 1],
+                force,
+            ),
+            ("mid.det_f:max", 1.0),
         ],
         histories: vec![
             (["far.ux", "far.uy", "far.uz"][dimension - 1], Box::new(far)),
             (["mid.sigma_xx", "mid.sigma_yy", "mid.sigma_zz"][dimension - 1], Box::new(stress)),
         ],
     }
+}
+
+/// A free bar under a traction p at its left end from the start on. In the middle σ = −p from
+/// L/2c to 3L/2c, and 0 until 5L/2c; the velocity is p/z, and then 2p/z. Nothing touches.
+fn pushed(bar: Bar, p: f64) -> Problem {
+    let Bar { element, cells, length, .. } = bar;
+    let crossing = length / bar.c();
+    let probe = "[[probe]]\nname = \"mid\"\nbody = \"bar\"\nrecord = [\"vx\", \"sigma_xx\", \"det_f\"]\n";
+    let case = [
+        "title = \"pushed\"\ndimension = 1\n".to_owned(),
+        bar.material("bar"),
+        bar.body("bar", 0.0, 0.0),
+        format!("[[load]]\nname = \"push\"\non = [\"bar.left\"]\ntraction = [{p:?}]\n"),
+        time(2.4 * crossing, crossing / cells as f64),
+        format!("{probe}at = [{:?}]\n", 0.5 * length),
+    ];
+    let metrics = vec![
+        ("mid.sigma_xx:min", -p),
+        ("mid.vx:max", 2.0 * p / bar.z()),
+        ("mid.det_f:max", 1.0),
+        ("mid.det_f:min", 1.0 - p / bar.young),
+    ];
+    Problem { name: format!("{element} pushed"), case: case.concat(), metrics, histories: Vec::new() }
 }
 
 /// A bar strikes a longer one at rest of larger impedance: the force z₁z₂v/(z₁ + z₂) acts for
@@ -394,6 +423,7 @@ fn problems() -> Vec<Problem> {
         all.push(struck(striker, bar(element, 72, 9.0, 4.0, 9.0), 0.021, 0.2));
         all.push(struck(striker, bar("L2", 90, 6.0, 1.0, 4.0), 0.013, 0.1));
         all.push(falling(element, 50));
+        all.push(pushed(bar(element, 20, 2.0, 1.0, 4.0), 0.2));
     }
     for element in ["T6", "T10"] {
         all.push(thrown(bar(element, 20, 10.0, 1.0, 900.0), 3.7, 10.0));

@@ -111,7 +111,7 @@ impl Faceted {
         for (face, edge) in (0..surface.faces()).flat_map(|face| [0, 1, 2].map(|edge| (face, edge))) {
             let is_sharp = surface.triangles.across(face, edge).is_some_and(|next| {
                 let turn = dot(surface.normals[face], surface.normals[next]);
-                face < next && turn < KINK && surface.is_convex(face, edge)
+                face < next && turn < KINK.cosine && surface.is_convex(face, edge)
             });
             if !is_sharp {
                 continue;
@@ -203,7 +203,7 @@ impl Faceted {
     /// face.
     pub(in super::super) fn at_corner(&self, face: usize, at: Point) -> AtCorner {
         let surface = &*self.0;
-        let is_blunt = |next: usize| dot(surface.normals[face], surface.normals[next]) >= KINK;
+        let is_blunt = |next: usize| dot(surface.normals[face], surface.normals[next]) >= KINK.cosine;
         for edge in 0..3 {
             // In a blunt groove the deeper wall constrains it; in a sharp one both do (`walls`).
             if let Some(next) = surface.triangles.across(face, edge)
@@ -220,7 +220,7 @@ impl Faceted {
         while let Some(edge) = surface.beyond(here, at) {
             let Some(next) = surface.triangles.across(here, edge) else { return AtCorner::Leaves };
             let turn = dot(surface.normals[here], surface.normals[next]);
-            if turn < KINK {
+            if turn < KINK.cosine {
                 if surface.is_convex(here, edge) {
                     return AtCorner::Leaves;
                 }

@@ -14,7 +14,7 @@
 
 use super::corner::AtCorner;
 use super::near::{Entry, Near, Point, Tip, around, distance};
-use crate::constants::KINK;
+use crate::constants::{KINK, ROUND_OFF};
 
 /// A piece of a polyline.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +89,7 @@ impl Polyline {
             let before = tangents[(k + segments - 1) % segments].0;
             let after = tangents[k].0;
             let cosine = dot(before, after);
-            if 1.0 + cosine < 1e-9 {
+            if 1.0 + cosine < ROUND_OFF {
                 return Err(PolylineError::TurnsBack(k + 1));
             }
             // tan(φ/2) = |sin φ| / (1 + cos φ)
@@ -127,7 +127,7 @@ impl Polyline {
             Piece::Corner { center, radius, side, normals } if *side > 0.0 => {
                 let [first, last] = *normals;
                 let cosine = dot(first, last);
-                let is_blunt = cosine >= KINK;
+                let is_blunt = cosine >= KINK.cosine;
                 // An arc through the middles of the segments has the chord tan(φ/2) of its radius.
                 let tangent = cross(first, last).abs() / (1.0 + cosine);
                 let arc = if is_blunt { 0.5 * self.shorter_beside(piece) / tangent } else { 0.0 };
@@ -285,7 +285,7 @@ impl Polyline {
             let Piece::Corner { side, .. } = self.pieces[corner] else { continue };
             let Piece::Segment { tangent: other, .. } = self.pieces[next] else { continue };
             let past = self.beyond(piece, at) == Some(corner);
-            let blunt = dot(tangent, other) >= KINK;
+            let blunt = dot(tangent, other) >= KINK.cosine;
             if side < 0.0 {
                 // In a dent the deeper wall constrains it; in a concave corner both do (`walls`).
                 if blunt && self.gap(next, at) < self.gap(piece, at) && self.faces(next, at) {

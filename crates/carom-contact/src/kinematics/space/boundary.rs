@@ -292,7 +292,7 @@ impl Boundary {
     /// they meet.
     pub(super) fn is_smooth(&self, facet: usize, other: usize, y: &[f64]) -> bool {
         let [here, there] = self.normals_where_met(facet, other, y);
-        here.dot(&there) > KINK
+        here.dot(&there) > KINK.cosine
     }
 
     /// Normals of two facets where they meet: in the middle of their common edge, or at the corner.
@@ -331,7 +331,7 @@ impl Boundary {
         let there = patch.at(y, patch.along(neighbour.edge, 1.0 - s)).normal;
         let is_convex = || {
             let [start, end] = [0.0, 1.0].map(|s| own.at(y, own.along(edge, s)).position);
-            here.dot(&there) < KINK && cross(here, there).dot(&(end - start)) > 0.0
+            here.dot(&there) < KINK.cosine && cross(here, there).dot(&(end - start)) > 0.0
         };
         let is_continued = |facet: usize| match self.continuation(facet) {
             Continuation::None => false,
@@ -357,7 +357,7 @@ impl Boundary {
         let nodes = self.patch(facet).nodes;
         let along = place(y, nodes[(edge + 1) % self.shape.corners()]) - place(y, nodes[edge]);
         // Counter-clockwise seen from outside: at a convex edge the normals turn about it.
-        here.dot(&there) < KINK && cross(here, there).dot(&along) > 0.0
+        here.dot(&there) < KINK.cosine && cross(here, there).dot(&along) > 0.0
     }
 
     /// The facets that share a corner with a facet and bend away from it there by more than 30°.
@@ -383,7 +383,7 @@ impl Boundary {
                 ends.iter().for_each(|&node| directions.entry(node).or_default().push(along));
             }
         }
-        let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < KINK);
+        let turns = |at: &Vec<Vector<3>>| at.iter().any(|along| along.dot(&at[0]).abs() < KINK.cosine);
         directions.into_iter().filter(|(_, at)| turns(at)).map(|(node, _)| node).collect()
     }
 

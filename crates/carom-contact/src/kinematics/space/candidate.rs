@@ -7,9 +7,7 @@ use super::crossing::crossing;
 use super::node_to_patch::NodeToPatch;
 use super::patch::place;
 use super::paths::Paths;
-use crate::constants::{
-    DEEP, EXTENDED, FLUSH, KINK_SINE, NEAR_END_SPACE, PARALLEL_SINE, REACHED_TOGETHER, ROUND_OFF,
-};
+use crate::constants::{DEEP, EXTENDED, FLUSH, KINK, NEAR_END_SPACE, PARALLEL, REACHED_TOGETHER, ROUND_OFF};
 use crate::kinematics::opposed::presses;
 use crate::kinematics::way::Met;
 use crate::kinematics::{Facets, Kinematics, OnFacet, SpaceHit, SweptPatch};
@@ -126,7 +124,7 @@ impl NodeToPatch {
         let normals = own.normals_at(node, y);
         // The normal where the node meets the facet: in the middle of a dented one it differs.
         let normal = patch.at(y, xi).normal;
-        if presses(&normals, normal, PARALLEL_SINE) {
+        if presses(&normals, normal, PARALLEL.sine) {
             return false;
         }
         let meets = |point: Vector<3>| {
@@ -140,7 +138,7 @@ impl NodeToPatch {
                 xi.is_some_and(|xi| gap(xi) <= FLUSH * patch.length(y))
             })
         };
-        let is_far = !presses(&normals, normal, KINK_SINE);
+        let is_far = !presses(&normals, normal, KINK.sine);
         let here = place(y, node);
         sharp.any(|(edge, beyond)| {
             let (nodes, count) = self.primary.shape().edge(edge);
@@ -262,7 +260,7 @@ impl NodeToPatch {
             let past = NEAR_END_SPACE * patch.length(before);
             let enters = !self.faces_nothing(facet, xi, now)
                 && self.gap(facet, xi, end, now) + slack < 0.0
-                && self.gap(facet, from, start, before) + slack >= -PARALLEL_SINE * past;
+                && self.gap(facet, from, start, before) + slack >= -PARALLEL.sine * past;
             enters.then_some(OnFacet { facet, xi })
         })
     }

@@ -14,6 +14,13 @@
 //! other have none.
 //!
 //! The slip along a unit tangent e has the row H = w e − g e·∂n, so that rigid motions have none.
+//! With ∂e = −(e·∂n) n, as the tangent turns with the normal (`../tangents.rs`),
+//!
+//! ```text
+//! ∂H = w e ∂ξ_i′ − w n (e·∂n) − (e·∂n) ∂g
+//! ```
+//!
+//! without −g e·∂²n: exact where the edges touch.
 
 use carom_algebra::{Mat, Vector};
 use carom_solid::shape::{LineShape, line_shape};
@@ -197,5 +204,23 @@ impl EdgeGap {
             let turned = Vector([0, 1, 2].map(|k| self.changes(q, k).1.dot(&along)));
             along * self.weight(q) + turned * -self.distance
         })
+    }
+
+    /// Derivative ∂H/∂y of the row of the slip along a tangent by all nodes: overwrites the first
+    /// (3 count)² entries, row-major.
+    pub(super) fn slip_derivative_into(&self, along: Vector<3>, matrix: &mut [f64]) {
+        let size = 3 * self.count();
+        let dofs = || (0..self.count()).flat_map(|q| (0..3).map(move |k| (q, k)));
+        let turns: Vec<f64> = dofs().map(|(q, k)| self.changes(q, k).1.dot(&along)).collect();
+        for (column, (q, k)) in dofs().enumerate() {
+            let (xi, _) = self.changes(q, k);
+            let opened = self.weight(q) * self.normal[k];
+            for (row, (p, i)) in dofs().enumerate() {
+                let (edge, node, sign) = self.node(p);
+                let moved = sign * self.shapes[edge].first[node] * xi[edge] * along[i];
+                let tilted = self.weight(p) * self.normal[i] * turns[column];
+                matrix[row * size + column] = moved - tilted - turns[row] * opened;
+            }
+        }
     }
 }

@@ -21,10 +21,14 @@ use super::boundary::Boundary;
 use super::clear::Clear;
 use super::node_to_patch::NodeToPatch;
 use super::patch::place;
-use crate::friction::FrictionState;
-use crate::kinematics::Kinematics;
+use crate::kinematics::{BetweenNodes, Kinematics};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
+
+/// The weights of at most four nodes.
+fn weights(nodes: &[(usize, f64)]) -> [f64; 4] {
+    std::array::from_fn(|k| nodes.get(k).map_or(0.0, |&(_, weight)| weight))
+}
 
 /// Points of the sharp edges of a side against the facets of the other one.
 #[derive(Debug)]
@@ -33,8 +37,10 @@ pub struct EdgePoints {
     points: NodeToPatch,
     /// Number of the first point.
     first: usize,
-    /// Nodes of the edge of every point, with their weights.
-    nodes: Vec<Vec<(usize, f64)>>,
+    /// Nodes of the edge of every point.
+    edges: Vec<Vec<usize>>,
+    /// The weights of those nodes.
+    weights: Vec<[f64; 4]>,
     /// A node of the edge of every point, which represents the point.
     names: Vec<usize>,
     tools: Mutex<Tools>,
@@ -75,8 +81,9 @@ impl EdgePoints {
         Some(Self {
             first,
             names: nodes.iter().map(|nodes| nodes[0].0).collect(),
+            edges: nodes.iter().map(|nodes| nodes.iter().map(|&(node, _)| node).collect()).collect(),
+            weights: nodes.iter().map(|nodes| weights(nodes)).collect(),
             points: NodeToPatch::new(numbers, other).with_allowed(allowed).of_body(own),
-            nodes,
             tools: Mutex::new(Tools { places: [Vec::new(), Vec::new()], clear }),
         })
     }
@@ -87,17 +94,22 @@ impl EdgePoints {
         Self { points: self.points.reversed(), ..self }
     }
 
+    /// The nodes of the edge of a point with their weights.
+    fn own(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
+        self.edges[point].iter().copied().zip(self.weights[point])
+    }
+
     /// Position of a point.
     fn point(&self, point: usize, y: &[f64]) -> Vector<3> {
-        let weighted = |&(node, weight): &(usize, f64)| place(y, node) * weight;
-        self.nodes[point].iter().map(weighted).fold(Vector::ZERO, |sum, part| sum + part)
+        let weighted = |(node, weight)| place(y, node) * weight;
+        self.own(point).map(weighted).fold(Vector::ZERO, |sum, part| sum + part)
     }
 
     /// The positions of all nodes, followed by those of the points.
     fn extend(&self, y: &[f64], places: &mut Vec<f64>) {
         places.clear();
         places.extend_from_slice(y);
-        (0..self.nodes.len()).for_each(|point| places.extend(self.point(point, y).0));
+        (0..self.edges.len()).for_each(|point| places.extend(self.point(point, y).0));
     }
 
     /// The result of a function of the positions of all nodes and of one point.
@@ -106,7 +118,7 @@ impl EdgePoints {
             &mut *self.tools.lock().unwrap_or_else(PoisonError::into_inner);
         places.clear();
         places.extend_from_slice(y);
-        places.resize(y.len() + 3 * self.nodes.len(), 0.0);
+        places.resize(y.len() + 3 * self.edges.len(), 0.0);
         let at = y.len() + 3 * point;
         places[at..at + 3].copy_from_slice(&self.point(point, y).0);
         of(places)
@@ -114,18 +126,58 @@ impl EdgePoints {
 
     /// Adds rows of a point as rows of the nodes of its edge.
     fn share(&self, point: usize, of_point: &Rows, rows: &mut Rows) {
-        let own = &self.nodes[point];
         for row in of_point.iter() {
             let Some(others) = row.nodes.get(1..) else {
                 rows.push_open();
                 continue;
             };
             let slope = |k: usize, weight: f64| std::array::from_fn(|i| weight * row.gradient[3 * k + i]);
-            let of_edge = own.iter().map(|&(node, weight)| (node, slope(0, weight)));
+            let of_edge = self.own(point).map(|(node, weight)| (node, slope(0, weight)));
             let of_facet = others.iter().enumerate().map(|(k, &node)| (node, slope(k + 1, 1.0)));
             rows.push::<3>(row.gap, of_edge.chain(of_facet));
-            rows.begin_with_edge(own.len());
+            rows.begin_with_edge(self.edges[point].len());
             rows.reverse_from(rows.len() - 1, row.reversed);
+        }
+    }
+
+    /// Spreads a matrix over the dofs of a pair's point and facet to those of the nodes of its edge
+    /// and the facet; zero where the pair has no gap.
+    fn share_matrix(
+        &self,
+        pair: &Pair,
+        y: &[f64],
+        matrix: &mut [f64],
+        fill: impl FnOnce(&[f64], &mut [f64]),
+    ) {
+        let mut row = Rows::new(3);
+        let mut of_point = Vec::new();
+        let is_measured = self.with_point(pair.node, y, |y| {
+            let is_measured = self.points.measure(&mut { *pair }, y, &mut row).is_ok();
+            if is_measured {
+                let size = row.row(0).gradient.len();
+                of_point.resize(size * size, 0.0);
+                fill(y, &mut of_point);
+            }
+            is_measured
+        });
+        if !is_measured {
+            matrix.fill(0.0);
+            return;
+        }
+        let count = row.row(0).gradient.len();
+        let own = self.edges[pair.node].len();
+        let size = 3 * (own - 1) + count;
+        // The dof of the point's row that stands for a dof of the edge's row, and its share in it.
+        let of = |dof: usize| {
+            let node = dof / 3;
+            if node < own { (dof % 3, self.weights[pair.node][node]) } else { (dof - 3 * (own - 1), 1.0) }
+        };
+        for row in 0..size {
+            let (from, share) = of(row);
+            for column in 0..size {
+                let (to, other) = of(column);
+                matrix[row * size + column] = share * other * of_point[from * count + to];
+            }
         }
     }
 
@@ -148,10 +200,6 @@ impl Kinematics for EdgePoints {
         0
     }
 
-    fn rubbing(&self) -> usize {
-        0
-    }
-
     fn allowed(&self, point: usize) -> f64 {
         self.points.allowed(point)
     }
@@ -164,6 +212,10 @@ impl Kinematics for EdgePoints {
 
     fn facet_nodes(&self, pair: &Pair) -> &[usize] {
         self.points.facet_nodes(pair)
+    }
+
+    fn between_nodes(&self, pair: &Pair) -> Option<BetweenNodes<'_>> {
+        Some(BetweenNodes { nodes: &self.edges[pair.node], values: self.weights[pair.node] })
     }
 
     fn is_on_facet(&self, pair: &Pair) -> bool {
@@ -203,7 +255,6 @@ impl Kinematics for EdgePoints {
         self.extend(before, start);
         let mut of_points = Vec::new();
         let changed = self.points.search(start, end, pairing, &mut of_points);
-        pairing.pairs.iter_mut().for_each(|pair| pair.tangential.friction_state = FrictionState::FREE);
         events.extend(of_points.into_iter().map(|event| self.named(event)));
         changed
     }
@@ -232,36 +283,7 @@ impl Kinematics for EdgePoints {
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let mut row = Rows::new(3);
-        let mut of_point = Vec::new();
-        let is_measured = self.with_point(pair.node, y, |y| {
-            let is_measured = self.points.measure(&mut { *pair }, y, &mut row).is_ok();
-            if is_measured {
-                let size = row.row(0).gradient.len();
-                of_point.resize(size * size, 0.0);
-                self.points.curvature_into(pair, y, &mut of_point);
-            }
-            is_measured
-        });
-        if !is_measured {
-            curvature.fill(0.0);
-            return;
-        }
-        let count = row.row(0).gradient.len();
-        let own = &self.nodes[pair.node];
-        let size = 3 * (own.len() - 1) + count;
-        // The dof of the point's row that stands for a dof of the edge's row, and its share in it.
-        let of = |dof: usize| match own.get(dof / 3) {
-            Some(&(_, weight)) => (dof % 3, weight),
-            None => (dof - 3 * (own.len() - 1), 1.0),
-        };
-        for row in 0..size {
-            let (from, share) = of(row);
-            for column in 0..size {
-                let (to, other) = of(column);
-                curvature[row * size + column] = share * other * of_point[from * count + to];
-            }
-        }
+        self.share_matrix(pair, y, curvature, |y, of_point| self.points.curvature_into(pair, y, of_point));
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], moved: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
@@ -272,8 +294,16 @@ impl Kinematics for EdgePoints {
         Ok(())
     }
 
-    /// Zero: edges have no friction, whose force would need it.
-    fn slip_derivative_into(&self, _: &Pair, _: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
-        matrix.fill(0.0);
+    fn slip_derivative_into(
+        &self,
+        pair: &Pair,
+        y: &[f64],
+        moved: &[f64],
+        tangent: usize,
+        matrix: &mut [f64],
+    ) {
+        self.share_matrix(pair, y, matrix, |y, of_point| {
+            self.points.slip_derivative_into(pair, y, moved, tangent, of_point);
+        });
     }
 }

@@ -21,7 +21,6 @@ use crate::constants::{
     DEEPEST, EDGES_BEHIND, EDGES_BETWEEN, EDGES_CORNER, EDGES_CROSS, EDGES_NEAR_CORNER, EDGES_OUTSIDE,
     EDGES_TOGETHER, EXTENDED, PARALLEL, PAST_END, ROUND_OFF,
 };
-use crate::friction::{FrictionState, Tangential};
 use crate::kinematics::apart::Apart;
 use crate::kinematics::drift::Drift;
 use crate::kinematics::tangents::tangents;
@@ -105,11 +104,7 @@ impl EdgeToEdge {
     }
 
     fn pair(&self, edges: [usize; 2], xi: [f64; 2]) -> Pair {
-        let mut pair = Pair::open(edges[0], self.sides[1].facets() + edges[1], xi[0]);
-        pair.eta = xi[1];
-        // It has no friction.
-        pair.tangential = Tangential { friction_state: FrictionState::FREE, ..Tangential::default() };
-        pair
+        Pair { eta: xi[1], ..Pair::open(edges[0], self.sides[1].facets() + edges[1], xi[0]) }
     }
 
     /// The certified test for crossings of edges.
@@ -341,10 +336,6 @@ impl Kinematics for EdgeToEdge {
         0
     }
 
-    fn rubbing(&self) -> usize {
-        0
-    }
-
     fn keep(&mut self, _: &[f64]) {}
 
     fn kept(&self, _: usize) -> f64 {
@@ -389,7 +380,8 @@ impl Kinematics for EdgeToEdge {
             let is_held = all.iter().any(|(known, other)| {
                 let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
                 let same = |other: &EdgeGap| {
-                    (other.point(0) - gap.point(0)).norm() < near && other.normal.dot(&gap.normal) > PARALLEL
+                    (other.point(0) - gap.point(0)).norm() < near
+                        && other.normal.dot(&gap.normal) > PARALLEL.cosine
                 };
                 joins && other.as_ref().is_some_and(same)
             });
@@ -440,8 +432,13 @@ impl Kinematics for EdgeToEdge {
         Ok(())
     }
 
-    /// Zero: edges have no friction, whose force would need it.
-    fn slip_derivative_into(&self, _: &Pair, _: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
-        matrix.fill(0.0);
+    fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
+        match self.gap_of(pair, y) {
+            Some(gap) => {
+                let along = tangents(gap.normal, pair.tangential.tangents)[tangent];
+                gap.slip_derivative_into(along, matrix);
+            }
+            None => matrix.fill(0.0),
+        }
     }
 }

@@ -60,7 +60,7 @@ impl Edges {
             let out = leaving(k, is_end);
             let others = at[&nodes[k][usize::from(is_end)]].iter().filter(|(other, _)| *other != k);
             let straight = others.map(|&(other, end)| (-leaving(other, end).dot(&out), other, end));
-            let best = straight.fold((KINK, None), |best, (cosine, other, end)| {
+            let best = straight.fold((KINK.cosine, None), |best, (cosine, other, end)| {
                 if cosine > best.0 { (cosine, Some((other, end))) } else { best }
             });
             best.1

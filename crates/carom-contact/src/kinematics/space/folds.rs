@@ -86,7 +86,7 @@ impl PatchFolds {
             let point = boundary.middle(own, reference).position;
             let reach = WALL * boundary.patch(own).length(reference);
             let is_behind = |&facet: &usize| {
-                let alike = normals[own].dot(&normals[facet]) > ALIKE;
+                let alike = normals[own].dot(&normals[facet]) > ALIKE.cosine;
                 if facet == own || alike || self.are_of_different_pieces(own, facet) {
                     return false;
                 }
@@ -248,7 +248,7 @@ fn smooth_parts(boundary: &Boundary, reference: &[f64]) -> Vec<usize> {
                 let Some(other) = boundary.across(facet, edge) else { continue };
                 let [here, there] = boundary.normals_at_edge(facet, edge, 0.5, reference);
                 let goes_on = boundary.is_mirror(facet) == boundary.is_mirror(other);
-                if part[other] == usize::MAX && goes_on && here.dot(&there) > KINK {
+                if part[other] == usize::MAX && goes_on && here.dot(&there) > KINK.cosine {
                     part[other] = begin;
                     next.push(other);
                 }

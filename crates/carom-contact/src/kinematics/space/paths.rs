@@ -5,7 +5,7 @@ use carom_solid::{Bounds, Hull, Tree};
 
 use super::boundary::Boundary;
 use super::patch::{PatchPoint, place};
-use crate::constants::{PATH_BOX, ROUND_OFF};
+use crate::constants::{ON_FACET, ROUND_OFF};
 use crate::kinematics::Facets;
 use crate::kinematics::drift::Drift;
 
@@ -105,6 +105,6 @@ impl Paths {
     /// Whether a node may meet a facet on its path, rather than only be near it.
     pub(super) fn may_cross(&self, path: &Bounds, facet: usize) -> bool {
         let tight = &self.tight[facet];
-        tight.grown(PATH_BOX * tight.size()).meets(path)
+        tight.grown(ON_FACET * tight.size()).meets(path)
     }
 }

@@ -29,6 +29,8 @@ use edge_path::EdgePath;
 use patch_path::PatchPath;
 use path::CurvePath;
 
+use crate::constants::{MEETS, ON_FACET};
+
 /// Result of a swept test of a node against a facet in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Swept {
@@ -69,7 +71,7 @@ pub struct SweptTest {
 impl SweptTest {
     /// Swept tests for facets of a shape, with a tolerance of 1e-6.
     pub fn new(shape: FacetShape) -> Self {
-        Self { shape, tolerance: 1e-6, queue: Earliest::new(BUDGET) }
+        Self { shape, tolerance: MEETS, queue: Earliest::new(BUDGET) }
     }
 
     /// Swept tests with another tolerance in θ, which is also that of the distance relative to the
@@ -134,7 +136,7 @@ impl SweptPatch {
     /// # Panics
     /// For a point or a line.
     pub fn new(shape: FacetShape) -> Self {
-        Self { net: Net::facet(shape), tolerance: 1e-5, queue: Earliest::new(BUDGET) }
+        Self { net: Net::facet(shape), tolerance: ON_FACET, queue: Earliest::new(BUDGET) }
     }
 
     /// First contact, where the node does not move to the outer side, of a node that moves from
@@ -168,7 +170,7 @@ pub struct SweptEdges {
 impl Default for SweptEdges {
     /// Swept tests of edges with a tolerance of 1e-5.
     fn default() -> Self {
-        Self { tolerance: 1e-5, queue: Earliest::new(BUDGET) }
+        Self { tolerance: ON_FACET, queue: Earliest::new(BUDGET) }
     }
 }
 

@@ -1,12 +1,11 @@
-//! Metrics after the contact force and the columns of probes have been averaged over a short time,
-//! 1/16 of the first contact episode.
+//! Metrics after the contact force and the columns of probes have been averaged over a short time.
 
 use carom_record::metrics::averaged::{OF_COLUMN, OF_FORCE, averaged};
 use carom_record::metrics::table::{COLUMNS, HISTORY};
 use carom_record::{Column, History};
 
 #[test]
-fn the_metrics_of_single_rows_exist() {
+fn the_metrics_of_few_rows_exist() {
     assert!(OF_FORCE.iter().all(|name| HISTORY.iter().any(|d| d.name == *name)));
     assert!(OF_COLUMN.iter().all(|name| COLUMNS.iter().any(|d| d.name == *name)));
 }
