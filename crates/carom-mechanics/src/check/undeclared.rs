@@ -1,7 +1,7 @@
 //! Contact that nobody has declared: bodies that overlap, or lie in a rigid obstacle, with nodes
 //! that no contact between them covers, and bodies that cross themselves. Nothing prevents it, and
-//! no force comes of it: it is warned of. So are sharp edges and narrow spheres of rigid obstacles
-//! in space that lie between the nodes of a body.
+//! no force comes of it: it is warned of. So are parts of rigid obstacles that lie between the nodes
+//! of a body: wide circles and spheres, and in space also narrow ones and sharp edges.
 //!
 //! Where a boundary touches itself, its chords cross by round-off. A body crosses itself where the
 //! node deepest inside it is as deep as other bodies may not be, at a place that no contact of the
@@ -84,7 +84,9 @@ impl Undeclared {
                 }
             }
         }
-        let tips = Tips::all(model).into_iter().filter(|_| model.dimension == 3).collect();
+        // Pressures on average lie half above and half below a wide circle.
+        let holds_nodes = |tips: &Tips| !model.contacts[tips.contact].kinematics.is_of_field(0);
+        let tips = Tips::all(model).into_iter().filter(holds_nodes).collect();
         Self { between: Penetration::new(model, ways, tips), obstacles: beside(model), own: None }
     }
 
@@ -132,7 +134,8 @@ impl Undeclared {
             }
         }
         for (contact, body, pierced) in self.between.pierced(model, y) {
-            if pierced.depth > pierced.counts.max(SHALLOW * pierced.length) {
+            let is_loose = model.dimension == 3 || pierced.counts > 0.0;
+            if is_loose && pierced.depth > SHALLOW * pierced.length {
                 found.push(Overlap::Between { body, contact });
             }
         }

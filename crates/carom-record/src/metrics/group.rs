@@ -22,6 +22,7 @@ pub const GROUPS: [Group; 7] = [
             "turning_time",
             "chatter",
             "penetration",
+            "penetration_secondary",
             "penetration_mean",
         ],
     },

@@ -10,7 +10,7 @@ use super::{force, ledger, oscillation};
 use crate::units::Unit;
 
 /// Metrics of a history.
-pub const HISTORY: [Definition; 28] = [
+pub const HISTORY: [Definition; 29] = [
     d(
         "contact_start",
         Unit::Time,
@@ -214,6 +214,14 @@ pub const HISTORY: [Definition; 28] = [
         TABLES,
         "depth of the deepest node of either side of a contact in the other body, in space also of points of its sharp edges (not where a body meets itself), constrained by the contact or not (column penetration_secondary: constrained nodes); smooth nodes of the primary side, which contact lets in by a fiftieth of a facet, included",
         |f| extreme(f.history.column("penetration")?, f64::gt).map(|x| x.1),
+    ),
+    d(
+        "penetration_secondary",
+        Unit::Length,
+        "max (0, −g)",
+        TABLES,
+        "depth of the deepest node that a contact constrains",
+        |f| extreme(f.history.column("penetration_secondary")?, f64::gt).map(|x| x.1),
     ),
     d(
         "penetration_mean",

@@ -176,14 +176,16 @@ impl Ranks<'_> {
         Some(Apart { arm, why })
     }
 
-    /// Penetration of a run that is a part of the motion, and more than that of the reference.
+    /// Penetration of a run that is a part of the motion, and more than that of the reference. The
+    /// share of a facet by which smooth nodes of the primary side may enter is that of the mesh, not
+    /// of the arm.
     fn deep(&self, row: &Row) -> Option<String> {
         let reference = self.reference?;
         let finest = reference.finest()?;
         let motions = reference.known.iter().filter(|known| known.group.kind == Kind::Motion);
         let motion = motions.filter_map(|known| known.group.motion(finest)).reduce(f64::max)?;
-        let own = row.value("penetration")?;
-        let right = finest.value("penetration").unwrap_or(0.0);
+        let own = row.value("penetration_secondary")?;
+        let right = finest.value("penetration_secondary").unwrap_or(0.0);
         let beyond = (own - right) / motion;
         (beyond > DEEP).then(|| {
             format!(

@@ -173,14 +173,14 @@ fn reasons(field: &Field, chosen: &Ranked, best: &Ranked) -> Vec<String> {
         Some(accuracy) => {
             format!("smallest error of the arms within 10 % of the lowest cost, of those with an error of at most {accuracy}, its uncertainty included")
         }
-        None if best.arm == chosen.arm => "no arm has a smaller error".to_owned(),
+        None if best.arm == chosen.arm => "no ranked arm has a smaller error".to_owned(),
         None => format!(
             "smallest error of the arms within 10 % of the lowest cost, of those that are as accurate as the most accurate one, up to 5 %, or half less accurate and not distinguished from it, {}: {}",
             field.name(best),
             known(best)
         ),
     });
-    reasons.push("no arm has a smaller error at no more cost".to_owned());
+    reasons.push("no ranked arm has a smaller error at no more cost".to_owned());
     if !field.measured.measure.left_out.is_empty() {
         let left_out = field.measured.measure.left_out.join("; ");
         reasons.push(format!("not established by the reference, and left out: {left_out}"));

@@ -111,9 +111,8 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
         LogEvent::Overlap { time, overlap: Undeclared::Between { body, contact } } => {
             let place = format!("body \"{}\"", model.parts[*body].name);
             let name = contact_name(*contact);
-            let message = format!(
-                "a sharp edge or a narrow sphere of the obstacle of contact \"{name}\" lies between nodes of {place}"
-            );
+            let message =
+                format!("a part of the obstacle of contact \"{name}\" lies between nodes of {place}");
             Event::new(step, *time, "between-nodes", message).with("place", place).with("contact", name)
         }
         LogEvent::Overlap { time, overlap: Undeclared::Sides { contact } } => {

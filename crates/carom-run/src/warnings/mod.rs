@@ -219,9 +219,10 @@ pub const WARNINGS: [Entry; 34] = [
     },
     Entry {
         id: "edge-between-nodes",
-        why: "in space a rigid obstacle holds nodes alone: between them its sharp edges, corners and narrow spheres \
-              enter the body, and the contact is too soft or absent there",
-        advice: "nodes of the body along the edge, on the obstacle's side of it, or a finer mesh there; or a stiff body in place of the obstacle, whose edges and corners are held",
+        why: "a rigid obstacle holds nodes alone, in the plane also parts of it that are narrower than a facet: between \
+              nodes the rest enters the body, the contact is too soft or absent there, and a body that glides over a \
+              round part rises and falls by as much",
+        advice: "a finer mesh there (of a round part the depth falls with the square of its size), or nodes of the body along an edge, on the obstacle's side of it; or a stiff body in place of the obstacle, whose edges and corners are held",
         rule: Rule::Record(record::edge_between_nodes),
     },
     Entry {

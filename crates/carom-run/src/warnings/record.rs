@@ -133,7 +133,7 @@ pub(super) fn edge_between_nodes(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
     let entered = events(run, "between-nodes").filter_map(|event| {
         let text = |key: &str| event.data.get(key)?.as_str();
         let what = format!(
-            "a sharp edge or a narrow sphere of the obstacle lies in {} by more than 1 % of a facet from t = {} on",
+            "a part of the obstacle lies in {}, between its nodes, by more than 1 % of a facet from t = {} on",
             text("place")?,
             short(event.time)
         );

@@ -203,6 +203,42 @@ fn restitution_one_keeps_the_energy_of_moreau_and_jean() {
     assert!((elastic.0 - 1.0).abs() < 0.01);
 }
 
+const PRESTRAINED: &str = r#"
+dimension = 1
+material = [{ name = "m", law = "linear-elastic", density = 1.0, young = 100.0, poisson = 0.0 }]
+[[body]]
+name = "bar"
+material = "m"
+element = "L2"
+mesh = { shape = "interval", min = 0.0, max = 1.0, cells = 10 }
+position = ["0.99*X"]
+[[support]]
+on = ["bar.right"]
+fix = ["x"]
+[[contact]]
+name = "wall"
+secondary = "bar.left"
+primary = { plane = { point = [0.0], normal = [1.0] } }
+[time]
+end = 2.0
+step = 0.01
+scheme = { kind = "moreau-jean", theta = 0.5 }
+"#;
+
+/// A bar compressed by 1 % touches a wall, at rest: the force on it is E/100 for ever. It would be
+/// released if a gap of zero were always an open one.
+#[test]
+fn a_prestrained_body_that_touches_at_rest_stays_there() {
+    let mut sim = simulation(PRESTRAINED, &[] as &[&str]);
+    let start = sim.state().y.clone();
+    while !sim.finished() {
+        sim.step().unwrap();
+        assert!((sim.state().contact_forces[0][0] - 1.0).abs() < 1e-9, "{:?}", sim.state().contact_forces);
+    }
+    let moved = sim.state().y.iter().zip(&start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(moved < 1e-12, "{moved:e}");
+}
+
 /// The stable step of a uniform bar of lumped linear elements is dx/c; that of a mesh lies between
 /// the bound by cells and the onset of instability.
 #[test]

@@ -177,7 +177,9 @@ impl EdgeToEdge {
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
-        let met = gap.distance < 0.0 && gap.distance > -DEEPEST * length;
+        // Where edges touch at nodes, round-off would choose of mirror images between the pair of the
+        // edges and those of the nodes.
+        let met = gap.distance < -ROUND_OFF * length && gap.distance > -DEEPEST * length;
         let between = if self.at_corners(edges, gap.xi) { EDGES_OUTSIDE } else { EDGES_BETWEEN };
         if !met
             || !self.is_on(edges, gap.xi, PAST_END, -EDGES_CORNER)
@@ -371,11 +373,16 @@ impl Kinematics for EdgeToEdge {
         events: &mut Vec<PairEvent>,
     ) -> bool {
         let (mut changed, mut all) = self.follow([before, now], pairing, events);
+        let mut found = Vec::new();
         self.each_near(before, now, |edges| {
-            if all.iter().any(|(known, _)| *known == edges) {
-                return;
+            if !all.iter().any(|(known, _)| *known == edges) {
+                found.extend(self.candidate(edges, before, now).map(|gap| (edges, gap)));
             }
-            let Some(gap) = self.candidate(edges, before, now) else { return };
+        });
+        // Of edges that continue each other those that the contact point lies on come first.
+        let past = |(_, gap): &([usize; 2], EdgeGap)| gap.xi.map(|xi| (xi.abs() - 1.0).max(0.0)).iter().sum();
+        found.sort_by(|a, b| f64::total_cmp(&past(a), &past(b)));
+        for (edges, gap) in found {
             let near = EDGES_TOGETHER * self.shorter(edges, now);
             let is_held = all.iter().any(|(known, other)| {
                 let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
@@ -390,7 +397,7 @@ impl Kinematics for EdgeToEdge {
                 pairing.pairs.push(self.pair(edges, gap.xi));
                 all.push((edges, Some(gap)));
             }
-        });
+        }
         pairing.pairs.sort_by_key(|pair| (pair.node, pair.facet));
         changed
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use carom_record::study::ranking::Ranking;
+use carom_record::study::ranking::{Apart, Ranking};
 use carom_record::study::{Row, Study, StudyManifest, Verdict};
 use carom_record::{Status, Warning};
 use carom_report::{ReportError, ReportSummary};
@@ -181,6 +181,7 @@ fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
         Err(reasons) => {
             let mut lines = vec![String::new(), format!("no recommendation for the goal \"{goal}\":")];
             lines.extend(reasons.iter().map(|reason| format!("  {reason}")));
+            lines.extend(set_apart(study, ranking));
             return lines;
         }
     };
@@ -192,5 +193,15 @@ fn recommendation(study: &Study, ranking: &Ranking) -> Vec<String> {
     }
     lines.push(format!("confidence: {}", verdict.confidence.word()));
     lines.extend(verdict.confidence_reasons.iter().map(|reason| format!("  {reason}")));
+    lines.extend(set_apart(study, ranking));
     lines
+}
+
+/// The arms that are not ranked, each with the reason.
+fn set_apart(study: &Study, ranking: &Ranking) -> Vec<String> {
+    if ranking.apart.is_empty() {
+        return Vec::new();
+    }
+    let of = |apart: &Apart| format!("  {}: {}", study.manifest.arms[apart.arm].name, apart.why);
+    std::iter::once("not ranked:".to_owned()).chain(ranking.apart.iter().map(of)).collect()
 }
