@@ -33,6 +33,8 @@ pub struct Pair {
     pub joint: Option<u8>,
     /// Whether the pair is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
+    /// Whether the pair has been active since the start of the run.
+    pub rests: bool,
     /// Multiplier λ ≤ 0; zero unless active.
     pub lambda: f64,
     /// λ̂ of an augmented Lagrangian: λ of the last round, at first that of the step's start.
@@ -62,6 +64,7 @@ impl Pair {
             eta: 0.0,
             joint: None,
             active: false,
+            rests: false,
             lambda: 0.0,
             multiplier: 0.0,
             start: None,

@@ -79,6 +79,7 @@ pub fn start(
         memory: Vec::new(),
     });
     for pair in pairs.iter_mut().flatten() {
+        pair.rests = pair.active;
         pair.begins = false;
         if inertia != Inertia::Constrained {
             pair.depth = 0.0;

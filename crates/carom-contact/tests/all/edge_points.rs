@@ -140,7 +140,10 @@ fn the_derivative_of_the_slip_agrees_with_differences() {
                     all[3 * node..3 * node + 3].copy_from_slice(x);
                 }
                 let mut rows = Rows::new(3);
-                contact.slip(&pair, &all, &[], &mut rows).unwrap();
+                let mut moved = pair;
+                contact.measure(&mut moved, &all, &mut rows).unwrap();
+                rows.clear();
+                contact.slip(&moved, &all, &[], &mut rows).unwrap();
                 rows.row(tangent).gradient.to_vec()
             };
             let start: Vec<f64> = nodes.iter().flat_map(|n| [0, 1, 2].map(|i| y[3 * n + i])).collect();

@@ -11,7 +11,7 @@ use carom_contact::{
     Along, Answer, Direction, DiscreteGradient, FrictionState, Pair, Pairing, Row, Rows, inner, length,
 };
 
-use crate::contact::independent::SAME;
+use crate::contact::independent::{DEPENDENT, SAME};
 use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::slip_derivatives::SlipDerivatives;
 use crate::model::Contact;
@@ -228,7 +228,7 @@ impl Constraints {
         let slips = PreventedSlips::of(equations, evaluation);
         let places = slips.independent();
         let counts = |&(k, p): &(usize, usize)| {
-            places.binary_search(&(k, p, 0)).is_ok() || !is_covered(equations, evaluation, (k, p))
+            places.binary_search(&(k, p, 0)).is_ok() || !follows(equations, evaluation, (k, p))
         };
         let of_pair = |(k, p): (usize, usize)| evaluation.answers[k][p].open.abs();
         let gaps = evaluation.pressing().filter(counts).map(of_pair).fold(0.0, f64::max);
@@ -371,15 +371,25 @@ impl Evaluation {
     }
 }
 
-/// Whether the field of pressure beside a single node presses for it, whose row depends on others:
-/// its gap is closed but for the share that the row may differ from them.
+/// Whether the field of pressure beside a single node presses for it, whose row depends on others.
 fn is_covered(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, usize)) -> bool {
     let model = equations.model;
     let row = evaluation.rows[k].row(p);
     let acts = row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
-    let size = size_at(&model.contacts[k], row.nodes, &evaluation.y, model.dimension);
-    let is_closed = evaluation.answers[k][p].open.abs() <= model.gap_tolerance + SAME * size;
-    acts && is_closed && model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p])
+    let bounds = model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
+    acts && bounds && follows(equations, evaluation, (k, p))
+}
+
+/// Whether a gap whose row depends on others is closed by theirs, but for the share that the row may
+/// differ from them.
+pub(crate) fn follows(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, usize)) -> bool {
+    let model = equations.model;
+    let contact = &model.contacts[k];
+    let row = evaluation.rows[k].row(p);
+    let size = size_at(contact, row.nodes, &evaluation.y, model.dimension);
+    let bounds = contact.bounds(&evaluation.at.pairings[k].pairs[p]);
+    let share = if bounds { SAME } else { DEPENDENT };
+    evaluation.answers[k][p].open.abs() <= model.gap_tolerance + share * size
 }
 
 /// Size of the facet of a row; of a node alone, beside a rigid obstacle, that of the facets of its

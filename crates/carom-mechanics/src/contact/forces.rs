@@ -84,7 +84,7 @@ impl Equations<'_> {
             let along = if turned.is_empty() { &evaluation.rows[k] } else { turned };
             along.row(p).add_to(weight * answer.lambda, &mut evaluation.forces.contact);
             evaluation.measure.gap = evaluation.measure.gap.max(answer.open.abs());
-            evaluation.measure.may_depend |= contact.bounds(pair);
+            evaluation.measure.may_depend |= self.model.dimension == 3 || contact.bounds(pair);
         }
         evaluation.springs += answer.energy;
         evaluation.answers[k].push(answer);

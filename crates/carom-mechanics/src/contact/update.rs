@@ -10,7 +10,7 @@ use carom_contact::{
 };
 
 use crate::contact::augmented;
-use crate::contact::constraints::Constraints;
+use crate::contact::constraints::{Constraints, follows};
 use crate::contact::depths::{begin, beginning, ease};
 use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::rounds::Rounds;
@@ -151,7 +151,8 @@ impl<'a> ContactUpdate<'a> {
         for (k, p) in now.pressing().filter(|place| !is_held(place)) {
             let contact = &model.contacts[k];
             let depth = -now.rows[k].row(p).gap;
-            if contact.interface.is_constraint() && depth > model.gap_tolerance {
+            let is_deep = depth > model.gap_tolerance && !follows(self.equations, now, (k, p));
+            if contact.interface.is_constraint() && is_deep {
                 let node = contact.node(&now.at.pairings[k].pairs[p]);
                 return Err(Rejected::Overconstrained { contact: contact.name.clone(), node, depth });
             }

@@ -25,8 +25,9 @@ use crate::state::State;
 use crate::workspace::Workspace;
 
 /// A predicted gap of at most this fraction of L is a tie, which round-off does not decide: it is
-/// open, as the published results of these schemes require, unless what touches there does not
-/// move. Otherwise a body pressed at rest would spring off.
+/// open, as the published results of these schemes require, unless it has been closed since the
+/// start of the run, when the bodies touched at rest. Otherwise a body pressed at rest would spring
+/// off.
 pub(super) const TIE: f64 = 1e-10;
 
 /// The contacts of a step, and their impulses.
@@ -109,8 +110,9 @@ impl Impulses {
         let tie = TIE * model.scale;
         for (pairing, rows) in pairings.iter_mut().zip(&measured) {
             for (pair, row) in pairing.pairs.iter_mut().zip(rows.iter()) {
-                let rests = row.along(&path).abs() <= tie;
-                pair.active = row.gap < if rests { tie } else { -tie };
+                pair.rests |= state.step == 0 && row.along(&path).abs() <= tie;
+                pair.active = row.gap < if pair.rests { tie } else { -tie };
+                pair.rests &= pair.active;
             }
         }
         let (places, stuck): (Vec<_>, Vec<_>) =

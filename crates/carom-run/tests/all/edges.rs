@@ -103,8 +103,9 @@ fn bars_that_cross_edge_on_edge_rebound_with_every_scheme() {
     }
 }
 
-/// The upper bar also moves along the lower one. In an impact in which two bodies slide all the
-/// time, the tangential impulse is μ times the normal one, against the slip.
+/// Stiff bars, of which the upper one also moves along the lower one. In an impact in which two
+/// bodies slide all the time, the tangential impulse is μ times the normal one, against the slip.
+/// The edges turn by 0.002 meanwhile.
 #[test]
 fn bars_that_slide_edge_on_edge_rub_with_every_scheme() {
     let mu = 0.1;
@@ -120,6 +121,8 @@ fn bars_that_slide_edge_on_edge_rub_with_every_scheme() {
     ] {
         let text = bars(scheme, &format!("mu = {mu}\n{contact}"));
         let text = text.replace("velocity = [0.0, 0.0, -2]", "velocity = [1.2, 0.6, -2.0]");
+        let text = text.replace("young = 1000.0", "young = 1e5");
+        let text = text.replace("end = 0.1\nstep = 5e-4", "end = 0.016\nstep = 5e-5");
         let mut sim = simulation(&text, &[""; 0]);
         while !sim.finished() {
             if let Err(stopped) = sim.step() {
@@ -128,9 +131,32 @@ fn bars_that_slide_edge_on_edge_rub_with_every_scheme() {
         }
         let [x, y, z] = sim.state().impulses[0];
         let ratio = x.hypot(y) / z;
-        assert!((ratio - mu).abs() < 0.02 * mu, "{scheme} {contact}: {ratio}");
-        assert!((y / x - 0.5).abs() < 0.05, "{scheme} {contact}: {x} {y}");
+        assert!((ratio - mu).abs() < 0.03 * mu, "{scheme} {contact}: {ratio}");
+        assert!((y / x - 0.5).abs() < 0.01, "{scheme} {contact}: {x} {y}");
         assert!(x < 0.0 && sim.state().ledger.friction_work < 0.0, "{scheme} {contact}");
+    }
+}
+
+/// Two slabs cross at a right angle and are pressed together; nodes of their long edges coincide.
+/// The set-up is symmetric about x = 0 and y = 0, and so are its contact forces, to round-off,
+/// whichever numbers edges and nodes have.
+#[test]
+fn slabs_whose_edges_cross_at_nodes_are_not_pushed_sideways() {
+    for enforcement in ["multiplier", "augmented", "penalty"] {
+        let text = format!(
+            "dimension = 3\n[[material]]\nname = \"m\"\nlaw = \"neo-hookean\"\ndensity = 1.0\nyoung = 2000.0\n\
+             poisson = 0.3\n[[body]]\nname = \"a\"\nmaterial = \"m\"\nelement = \"Hex8\"\n\
+             mesh = {{ shape = \"box\", min = [-1.0, -0.5, 0.0], max = [1.0, 0.5, 0.5], cells = [4, 2, 1] }}\n\
+             [[body]]\nname = \"b\"\nmaterial = \"m\"\nelement = \"Hex8\"\n\
+             mesh = {{ shape = \"box\", min = [-0.5, -1.0, -0.5], max = [0.5, 1.0, 0.0], cells = [2, 4, 1] }}\n\
+             [[support]]\non = [\"b.bottom\"]\nfix = [\"x\", \"y\", \"z\"]\n\
+             [[support]]\non = [\"a.top\"]\nmove = {{ x = \"0\", y = \"0\", z = \"-0.1*t\" }}\n\
+             [[contact]]\nname = \"c\"\nsecondary = \"a.skin\"\nprimary = \"b.skin\"\nenforcement = \"{enforcement}\"\n\
+             [time]\nend = 1.0\nstep = 0.1\nscheme = {{ kind = \"static\" }}\n"
+        );
+        let sim = finish(&text);
+        let [x, y, z] = sim.state().contact_forces[0];
+        assert!(z > 300.0 && x.abs().max(y.abs()) < 1e-10 * z, "{enforcement}: {x:e} {y:e} {z}");
     }
 }
 
@@ -188,7 +214,7 @@ fn a_turned_impact_of_edges_is_the_same() {
     let apart =
         |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[(i + 2) % 3] - b[i]).abs()).fold(0.0, f64::max);
     let worst = pairs.map(apart).fold(0.0, f64::max);
-    assert!(still.state().pairs[0].iter().any(|pair| !pair.active));
+    assert!(still.state().pairs[0].iter().any(|pair| pair.rests || !pair.active));
     assert!(worst < 1e-9, "{worst:e}");
 }
 

@@ -276,9 +276,21 @@ fn sensitivity(name: &str) -> Sensitivity {
     match (column, what) {
         (
             "",
-            "contact_episodes" | "impulse_x" | "impulse_y" | "impulse_z" | "energy_created" | "friction_lost"
-            | "slip_distance" | "stick_share" | "penetration" | "steps" | "newton_iterations"
-            | "rejected_steps" | "factorisations" | "cost",
+            "contact_episodes"
+            | "impulse_x"
+            | "impulse_y"
+            | "impulse_z"
+            | "energy_created"
+            | "friction_lost"
+            | "slip_distance"
+            | "stick_share"
+            | "penetration"
+            | "penetration_secondary"
+            | "steps"
+            | "newton_iterations"
+            | "rejected_steps"
+            | "factorisations"
+            | "cost",
         ) => Sensitivity::None,
         ("", "contact_start" | "contact_end" | "turning_time" | "apex_time") => Sensitivity::Instant(1.0),
         ("", "contact_duration") => Sensitivity::Instant(2.0),

@@ -105,7 +105,7 @@ fn by_columns(goal: Goal, study: &(StudyManifest, Vec<Row>), reference: &Referen
 fn reference(off: f64) -> Reference {
     let run = |off: f64| {
         let columns = [("A.uy".to_owned(), vec![0.0, off, 1.0])].into();
-        let metrics = row("", &[("penetration", 0.0)]).metrics;
+        let metrics = row("", &[("penetration_secondary", 0.0)]).metrics;
         Trajectory { times: vec![0.0, 0.5, 1.0], columns, metrics, ..Trajectory::default() }
     };
     // Triangles of the height h have the norm h/√3; errors of 4, 2 and 1 converge with order 1,
@@ -276,8 +276,8 @@ fn unsound_arms_are_set_apart() {
     with(&mut rows[0], "energy_created", 0.03);
     rows[1].status = Some(Status::Failed);
     rows[1].reason = Some("no convergence".into());
-    with(&mut rows[2], "penetration", 0.05);
-    with(&mut rows[3], "penetration", 0.01);
+    with(&mut rows[2], "penetration_secondary", 0.05);
+    with(&mut rows[3], "penetration_secondary", 0.01);
     let ranking = by_columns(Goal::Cost, &(manifest, rows), &reference(1e-4));
     let apart: Vec<_> = ranking.apart.iter().map(|apart| (apart.arm, apart.why.as_str())).collect();
     let known = [
