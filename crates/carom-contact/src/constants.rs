@@ -164,6 +164,6 @@ pub(crate) const WATCHED: f64 = 0.35;
 pub(crate) const WITHIN_STEP: f64 = SHALLOW;
 /// Share of a depth up to which motion decides; round-off is far below the rest.
 pub(crate) const SURE: f64 = 1.0 - SHALLOW;
-/// Distance up to which another facet is near, as far as parts between nodes may be deep; and past an
-/// edge up to which the search for a point on a facet may go.
+/// Distance up to which another facet is near, as far as parts between nodes may be deep; and past
+/// an edge up to which the search for a point on a facet may go.
 pub(crate) const NEAR_FACET: f64 = DEEPEST;

@@ -22,6 +22,8 @@ def test_history_shows_the_columns_and_the_contact(disc_run: carom.Run) -> None:
     assert len(ax.patches) == len(disc_run.episodes) == 1
     with pytest.raises(ValueError, match="different units"):
         carom.plot.history(disc_run, "top.uy", "kinetic")
+    with pytest.raises(KeyError, match="did you mean 'kinetic'"):
+        carom.plot.history(disc_run, "kinetik")
     assert carom.plot.history(disc_run).get_ylabel() == "contact_force_y (N)"
 
 

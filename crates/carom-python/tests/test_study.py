@@ -31,7 +31,7 @@ def test_arms_and_grid(bar: carom.Case) -> None:
     assert found["Hu"].case["time"]["scheme"]["kind"] == "hu" and found.missing == []
     assert table.attrs["units"]["contact_duration"] == "s"
     swept = carom.study(bar.copy().set("time.end", 0.8), grid={"time.step": [0.002, 0.004]}, jobs=2, progress=False)
-    assert len(swept.arms) == 2
+    assert len(swept.arms) == len(swept) == 2 and list(swept) == swept.arms
 
 
 def test_a_study_starts_from_the_changed_case(tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 //! Contact that nobody has declared: bodies that overlap, or lie in a rigid obstacle, with nodes
 //! that no contact between them covers, and bodies that cross themselves. Nothing prevents it, and
-//! no force comes of it: it is warned of. So are parts of rigid obstacles that lie between the nodes
-//! of a body: wide circles and spheres, and in space also narrow ones and sharp edges.
+//! no force comes of it: it is warned of. So are parts of rigid obstacles that lie between the
+//! nodes of a body: wide circles and spheres, and in space also narrow ones and sharp edges.
 //!
 //! Where a boundary touches itself, its chords cross by round-off. A body crosses itself where the
 //! node deepest inside it is as deep as other bodies may not be, at a place that no contact of the

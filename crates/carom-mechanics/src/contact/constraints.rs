@@ -380,8 +380,8 @@ fn is_covered(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, us
     acts && bounds && follows(equations, evaluation, (k, p))
 }
 
-/// Whether a gap whose row depends on others is closed by theirs, but for the share that the row may
-/// differ from them.
+/// Whether a gap whose row depends on others is closed by theirs, but for the share that the row
+/// may differ from them.
 pub(crate) fn follows(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, usize)) -> bool {
     let model = equations.model;
     let contact = &model.contacts[k];

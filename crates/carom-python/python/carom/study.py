@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,6 +69,13 @@ class Study:
         frame = pd.DataFrame(rows).set_index("arm")
         frame.attrs["units"] = self.units
         return frame
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the arms."""
+        return iter(self.arms)
+
+    def __len__(self) -> int:
+        return len(self._rows)
 
     def __getitem__(self, arm: str) -> Run:
         """The record of an arm."""

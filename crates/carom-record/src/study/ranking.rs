@@ -177,8 +177,8 @@ impl Ranks<'_> {
     }
 
     /// Penetration of a run that is a part of the motion, and more than that of the reference. The
-    /// share of a facet by which smooth nodes of the primary side may enter is that of the mesh, not
-    /// of the arm.
+    /// share of a facet by which smooth nodes of the primary side may enter is that of the mesh,
+    /// not of the arm.
     fn deep(&self, row: &Row) -> Option<String> {
         let reference = self.reference?;
         let finest = reference.finest()?;

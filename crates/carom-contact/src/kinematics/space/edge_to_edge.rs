@@ -177,8 +177,8 @@ impl EdgeToEdge {
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
-        // Where edges touch at nodes, round-off would choose of mirror images between the pair of the
-        // edges and those of the nodes.
+        // Where edges touch at nodes, round-off would choose of mirror images between the pair of
+        // the edges and those of the nodes.
         let met = gap.distance < -ROUND_OFF * length && gap.distance > -DEEPEST * length;
         let between = if self.at_corners(edges, gap.xi) { EDGES_OUTSIDE } else { EDGES_BETWEEN };
         if !met

@@ -45,13 +45,15 @@ def history(
         The Axes.
     """
     names = columns or (_force(run),)
+    # An unknown name is an error of the table, with the names that are nearest.
+    values = [run.history[name] for name in names]
     units = {run.history.units[name] for name in names}
     if len(units) > 1:
         raise ValueError(f"these columns have different units: {', '.join(sorted(units))}; draw two figures")
     with style():
         ax = axes(ax, size)
-        for name in names:
-            ax.plot(run.history["time"], run.history[name], label=name)
+        for name, column in zip(names, values, strict=True):
+            ax.plot(run.history["time"], column, label=name)
         shade_contact(run, ax)
         if events:
             _mark_events(run, ax)
