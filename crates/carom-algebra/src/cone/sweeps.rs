@@ -25,6 +25,9 @@ use crate::sums::max_abs;
 const SWEEPS: usize = 10;
 /// Largest number of attempts to solve the problem exactly.
 const ATTEMPTS: usize = 200;
+/// Largest number of attempts of the sweeps alone: of 33 forces of a cube flush on a larger one,
+/// 3200 were needed.
+const LAST_ATTEMPTS: usize = 4000;
 /// Number of attempts from which on the way of a sweep is followed further, and for as many
 /// attempts all normal forces are solved for together.
 const PATIENCE: usize = 10;
@@ -161,14 +164,16 @@ impl Coupled<'_> {
             }
         }
         z.clone_from(&self.guess);
-        for _ in 0..ATTEMPTS {
+        for _ in 0..LAST_ATTEMPTS {
+            self.begin_at(z);
+            self.leap(z, Self::sweep);
             self.begin_at(z);
             (0..SWEEPS).for_each(|_| self.sweep(z));
             if self.is_solved_by(z) {
                 return Ok(());
             }
         }
-        Err(LinearError::NoStates { forces: n, sweeps: 2 * ATTEMPTS * SWEEPS })
+        Err(LinearError::NoStates { forces: n, sweeps: (ATTEMPTS + LAST_ATTEMPTS) * SWEEPS })
     }
 
     /// Begins the proximal step of dependent rows at these forces.
