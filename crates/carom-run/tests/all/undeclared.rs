@@ -219,6 +219,44 @@ time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
     assert!(!given(0.25).contains(&id), "{:?}", given(0.25));
 }
 
+/// A plate with facets of 0.3 on two rigid rollers. Wide ones are held by nodes alone, and chords of
+/// facets lie inside them by h²/8r, 0.12 h with r = 0.31; narrower ones have rows of their own, and
+/// on very wide ones the chords are less than h/100 deep.
+#[test]
+fn a_round_obstacle_between_nodes_is_said() {
+    let given = |radius: f64| {
+        let roller = |name: &str, x: f64| {
+            format!(
+                "[[contact]]\nname = \"{name}\"\nsecondary = \"b.bottom\"\n\
+                 primary = {{ circle = {{ center = [{x}, {}], radius = {radius} }} }}\n",
+                -radius
+            )
+        };
+        let case = format!(
+            r#"
+dimension = 2
+material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 1e5, poisson = 0.0 }}]
+[[body]]
+name = "b"
+material = "m"
+element = "Q4"
+mesh = {{ shape = "rectangle", min = [-3.15, 0.0], max = [2.85, 0.3], cells = [20, 1] }}
+gravity = ["0", "-10"]
+velocity = [0.3, 0.0]
+{}{}[time]
+end = 0.4
+step = 0.005
+scheme = {{ kind = "chung-hulbert", rho_inf = 0.5 }}
+"#,
+            roller("l", -1.5),
+            roller("r", 1.5)
+        );
+        recorded(&case, &[]).contains(&"edge-between-nodes".to_owned())
+    };
+    assert!(given(0.31) && given(1.0));
+    assert!(!given(0.29) && !given(6.0));
+}
+
 /// Where the primary is the far side of its body, nodes of the contact enter elsewhere; where
 /// bodies overlap from the start they do not.
 #[test]

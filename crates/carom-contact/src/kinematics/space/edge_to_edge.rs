@@ -177,9 +177,11 @@ impl EdgeToEdge {
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
-        // Where edges touch at nodes, round-off would choose of mirror images between the pair of
-        // the edges and those of the nodes.
-        let met = gap.distance < -ROUND_OFF * length && gap.distance > -DEEPEST * length;
+        // Edges that touch may carry a body at the start. Where they touch at nodes, round-off would
+        // choose of mirror images between the pair of the edges and those of the nodes.
+        let is_between = self.is_on(edges, gap.xi, -EDGES_CORNER, -EDGES_CORNER);
+        let least = if is_between { ROUND_OFF } else { -ROUND_OFF };
+        let met = gap.distance < least * length && gap.distance > -DEEPEST * length;
         let between = if self.at_corners(edges, gap.xi) { EDGES_OUTSIDE } else { EDGES_BETWEEN };
         if !met
             || !self.is_on(edges, gap.xi, PAST_END, -EDGES_CORNER)
@@ -393,7 +395,7 @@ impl Kinematics for EdgeToEdge {
                 joins && other.as_ref().is_some_and(same)
             });
             if !is_held {
-                changed = true;
+                changed |= gap.distance < 0.0;
                 pairing.pairs.push(self.pair(edges, gap.xi));
                 all.push((edges, Some(gap)));
             }
