@@ -27,6 +27,7 @@ import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +58,8 @@ def free_constants():
 def called(text, names):
     """The text, but for imports and comments, with calls in place of names."""
     word = re.compile(r"\b(" + "|".join(sorted(names)) + r")\b(?!\()")
-    lines, importing = [], False
+    lines = []
+    importing = False
     for line in text.split("\n"):
         importing = importing or bool(re.match(r"\s*(pub )?use ", line))
         if not importing and not line.lstrip().startswith("//"):
@@ -104,16 +106,37 @@ def changeable(folder):
             path.write_text(called(text, mine))
 
 
-def ran(carom, out, jobs, constant):
-    """Rows of all cases by their number, with the folder of the record."""
+def judged(carom, out, jobs, constant, only=None):
+    """Judgement and record of all cases, or of some, by the ladder."""
     rows = {}
     for sample, words in SAMPLES.items():
+        if only is not None:
+            numbers = [name[1:5] for name in only if name[0] == sample]
+            if not numbers:
+                continue
+            words = [word for k, word in enumerate(words) if "--only" not in words[max(k - 1, 0) : k + 1]]
+            words += ["--only", ",".join(str(int(number)) for number in numbers)]
         folder = out / sample
         command = [sys.executable, str(ROOT / "scripts/ladder.py"), *words, "--carom", str(carom), "--out", str(folder), "--jobs", str(jobs)]
         subprocess.run(command, env={**os.environ, "CAROM_CONSTANT": constant}, stdout=subprocess.DEVNULL, check=False)
         with (folder / "results.csv").open() as file:
             rows.update({sample + row["case"]: (row["outcome"], folder / "runs" / row["case"]) for row in csv.DictReader(file)})
     return rows
+
+
+def contacts(carom, out, before, jobs, constant):
+    """What contact.csv has for every case and its image, by sample and name; without fields."""
+
+    def one(case):
+        record = out / case.parent.parent.name / case.stem
+        record.parent.mkdir(parents=True, exist_ok=True)
+        command = [carom, "run", case, "--out", record, "--no-report", "-q", "--threads", "1", "--set", "output.fields_every=0"]
+        subprocess.run([str(word) for word in command], env={**os.environ, "CAROM_CONSTANT": constant}, capture_output=True, check=False)
+        found = record / "contact.csv"
+        return case.parent.parent.name + case.stem, found.read_bytes() if found.exists() else b""
+
+    with ThreadPoolExecutor(jobs) as pool:
+        return dict(pool.map(one, sorted(before.glob("*/cases/*.toml"))))
 
 
 def last(record):
@@ -131,14 +154,13 @@ def change(before, after):
     return max((np.abs(new - old).max() / max(size, other) if max(size, other) > 0 else 0.0 for (old, size), (new, other) in pairs), default=0.0)
 
 
-def compared(before, after):
-    """A row of the table for two runs of all cases."""
-    same = lambda a, b: (a / "contact.csv").exists() and (b / "contact.csv").exists() and (a / "contact.csv").read_bytes() == (b / "contact.csv").read_bytes()
-    differs = [k for k in before if not same(before[k][1], after[k][1])]
-    judged = [f"{k}: {before[k][0]} > {after[k][0]}" for k in before if before[k][0] != after[k][0]]
-    sizes = [(change(before[k][1], after[k][1]), k) for k in differs if before[k][0] == after[k][0] == "right"]
+def compared(before, after, differs):
+    """A row of the table for cases that differ."""
+    other = [f"{k}: {before[k][0]} > {after[k][0]}" for k in differs if before[k][0] != after[k][0]]
+    both = [k for k in differs if before[k][0] == after[k][0] == "right"]
+    sizes = [(change(before[k][1], after[k][1]), k) for k in both]
     size, case = max(sizes, default=(0.0, ""))
-    return {"changed": len(differs), "judged": "; ".join(judged), "largest": f"{size:.1e}", "in": case}
+    return {"changed": len(differs), "judged": "; ".join(other), "largest": f"{size:.1e}", "in": case}
 
 
 def main():
@@ -155,17 +177,22 @@ def main():
         build = ["cargo", "build", "--release", "--bin", "carom"]
         subprocess.run(build, cwd=out / "source", env={**os.environ, "CARGO_TARGET_DIR": str(target)}, check=True)
         shutil.copy(target / "release/carom", carom)
-    before = ran(carom, out / "before", options.jobs, "")
+    before = judged(carom, out / "before", options.jobs, "")
     print(f"{len(before)} cases, {sum(outcome == 'right' for outcome, _ in before.values())} right", flush=True)
+    own = contacts(carom, out / "own", out / "before", options.jobs, "")
     names = options.only.split(",") if options.only else free_constants()
     with (out / "constants.csv").open("w", newline="") as file:
         table = csv.DictWriter(file, ["constant", "factor", "changed", "judged", "largest", "in"])
         table.writeheader()
         for name in names:
             for factor in ("0.5", "2"):
-                folder = out / "after"
-                row = {"constant": name, "factor": factor, **compared(before, ran(carom, folder, options.jobs, f"{name}={factor}"))}
-                shutil.rmtree(folder)
+                constant = f"{name}={factor}"
+                found = contacts(carom, out / "changed", out / "before", options.jobs, constant)
+                differs = sorted({k[:5] for k in own if own[k] != found[k]})
+                after = judged(carom, out / "after", options.jobs, constant, differs)
+                row = {"constant": name, "factor": factor, **compared(before, after, differs)}
+                shutil.rmtree(out / "changed")
+                shutil.rmtree(out / "after", ignore_errors=True)
                 table.writerow(row)
                 file.flush()
                 print(*row.values(), sep="  ", flush=True)

@@ -34,9 +34,10 @@ pub(crate) const ON_FACET: f64 = 10.0 * MEETS;
 
 // ---- Angles
 
-/// Kink from which on a joint is a corner, and an edge is sharp, and a facet rises in front of
-/// another one. A regular polygon of twelve sides has corners.
-pub(crate) const KINK: Angle = Angle::degrees(30.0);
+/// Least kink at which a joint is a corner and an edge is sharp, and least slope of a facet that
+/// rises in front of another one. A regular polygon of twelve sides has corners, whatever the last
+/// digits of its kinks of 30°.
+pub(crate) const KINK: Angle = Angle::degrees(29.5);
 /// Angle up to which two facets, or two normals, count as parallel.
 pub(crate) const PARALLEL: Angle = Angle::degrees(10.0);
 /// Angle between two facets up to which a part touches one of them: the rows of both would nearly
@@ -45,8 +46,9 @@ pub(crate) const SAME_NORMAL: Angle = Angle::degrees(3.0);
 /// Angle between two outward normals up to which they are alike: gaps depend on each other, and two
 /// places are not the faces of one wall.
 pub(crate) const ALIKE: Angle = Angle::degrees(60.0);
-/// Deviation of two outward normals from opposite directions up to which they oppose each other.
-pub(crate) const OPPOSED: Angle = Angle::degrees(45.0);
+/// Deviation of two outward normals from opposite directions up to which they oppose each other, as
+/// those of a flank and a chamfer of 45° do.
+pub(crate) const OPPOSED: Angle = Angle::degrees(45.5);
 /// Sine of the angle between edges below which they form no pair.
 pub(crate) const EDGES_CROSS: f64 = 0.1;
 /// Sine of the angle by which the normal of a new pair of edges lies between the facets' normals at
@@ -68,9 +70,6 @@ pub(crate) const SHARPEST: f64 = KINK.radians;
 /// Solid angle of a body at a node below which a node on the boundary cannot be told from one
 /// inside a fold in space: that of a cone with this opening.
 pub(crate) const SHARPEST_SOLID: f64 = 2.0 * PI * (1.0 - KINK.half().cosine);
-/// |η| up to which a closest point of a pressure field is followed: at a kink, a point as far away
-/// as the facet is long has its closest point 1 + 2 tan 15° from the middle.
-pub(crate) const MORTAR_BEYOND: f64 = 1.0 + 2.0 * KINK.half().sine / KINK.half().cosine;
 /// Deviation of the turn of the tangent from −180° up to which two places of a boundary may meet:
 /// all but parallel facets that face the same way.
 pub(crate) const FOLDED_BACK: f64 = PARALLEL.complement().radians;
@@ -97,7 +96,7 @@ pub(crate) const REACH_XI: f64 = 1.0 + EXTENDED;
 /// |ξ| of a pair that is handed over.
 pub(crate) const HAND_OVER_XI: f64 = 1.0 + PAST_END;
 /// Distance past an end beyond which a pair is handed back to the facet that it came from before
-/// Newton's method has converged: halfway to where facets end that are extrapolated.
+/// Newton's method has converged: half of the distance by which facets are extrapolated.
 pub(crate) const HAND_BACK: f64 = 0.5 * EXTENDED;
 /// |ξ| of a pair that is handed back.
 pub(crate) const HAND_BACK_XI: f64 = 1.0 + HAND_BACK;
@@ -114,13 +113,16 @@ pub(crate) const NEAR_END_SPACE: f64 = 0.5 * PAST_END;
 pub(crate) const WANDER: f64 = 2.0;
 /// |ξ| up to which it is followed.
 pub(crate) const WANDER_XI: f64 = 1.0 + 2.0 * WANDER;
+/// |η| up to which a closest point of a pressure field is followed: at a kink of 30°, a point as far
+/// away as the facet is long has its closest point 1 + 2 tan 15° = 1.54 from the middle.
+pub(crate) const MORTAR_BEYOND: f64 = 1.6;
 /// Share of the area of a multiplier that must face the primary for a pressure of its own.
 pub(crate) const MORTAR_COVERED: f64 = 0.05;
 /// Second derivative of half the squared distance of a centre from a facet, over that from a
 /// straight one, below which the facet follows the part.
 pub(crate) const FOLLOWS: f64 = 0.5;
-/// Distance 1 − |ξ| from a corner that the contact point of a new pair of edges has at least: such
-/// a point is clearly on this side of [`PAST_END`].
+/// Distance 1 − |ξ| from a corner that the contact point of a new pair of edges has at least: the
+/// point must not slide past the corner ([`PAST_END`]) in the next iterations.
 pub(crate) const EDGES_CORNER: f64 = 2.0 * PAST_END;
 /// Distance 1 − |ξ| from a corner, on both edges, up to which two edges meet at their corners: as
 /// far as facets are extrapolated.

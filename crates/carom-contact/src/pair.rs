@@ -31,6 +31,9 @@ pub struct Pair {
     /// End, corner or edge of the facet at which the node meets other facets as well (`joint.rs`);
     /// none inside a facet.
     pub joint: Option<u8>,
+    /// Number of the secondary edge at the start of the step less the present one: a crossing of
+    /// edges goes on along both. Other pairs keep their node.
+    pub handed: isize,
     /// Whether the pair is active: for a constraint, whether its gap is constrained to zero.
     pub active: bool,
     /// Whether the pair has been active since the start of the run.
@@ -63,6 +66,7 @@ impl Pair {
             xi,
             eta: 0.0,
             joint: None,
+            handed: 0,
             active: false,
             rests: false,
             lambda: 0.0,
@@ -103,7 +107,8 @@ pub struct Pairing {
 
 impl Pairing {
     /// Pairs at the start of a solve, in which each may change facets again.
-    pub fn new(pairs: Vec<Pair>) -> Self {
+    pub fn new(mut pairs: Vec<Pair>) -> Self {
+        pairs.iter_mut().for_each(|pair| pair.handed = 0);
         Self { pairs, margin: WATCHED, left: BTreeMap::new(), fresh: true }
     }
 

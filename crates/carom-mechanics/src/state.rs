@@ -372,6 +372,11 @@ impl State {
         Ok(())
     }
 
+    /// The closed pair at this state, the start of a step, of a pair within the step or at its end.
+    pub(crate) fn past(&self, contact: usize, pair: &Pair) -> Option<&Pair> {
+        self.closed(contact, pair.node.wrapping_add_signed(pair.handed))
+    }
+
     /// The first closed pair of a secondary node.
     pub(crate) fn closed(&self, contact: usize, node: usize) -> Option<&Pair> {
         let pairs = &self.pairs[contact];

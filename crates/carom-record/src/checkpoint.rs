@@ -18,7 +18,7 @@ use crate::stream::{Extent, Hash};
 use crate::{FieldEntry, RecordError, files};
 
 const MAGIC: &[u8; 8] = b"CAROMCKP";
-const VERSION: u32 = 18;
+const VERSION: u32 = 19;
 const HASH_LENGTH: usize = blake3::OUT_LEN;
 
 /// The record at a checkpoint.

@@ -25,9 +25,10 @@ use crate::sums::max_abs;
 const SWEEPS: usize = 10;
 /// Largest number of attempts to solve the problem exactly.
 const ATTEMPTS: usize = 200;
-/// Largest number of attempts of the sweeps alone: of 33 forces of a cube flush on a larger one,
-/// 3200 were needed.
-const LAST_ATTEMPTS: usize = 4000;
+/// Number of attempts of the sweeps alone, times the number of entries of the matrix: of 33 forces
+/// of a cube flush on a larger one up to 3200 attempts were needed. Many forces have as many as
+/// exact solutions have.
+const LAST_WORK: usize = 5_000_000;
 /// Number of attempts from which on the way of a sweep is followed further, and for as many
 /// attempts all normal forces are solved for together.
 const PATIENCE: usize = 10;
@@ -164,7 +165,8 @@ impl Coupled<'_> {
             }
         }
         z.clone_from(&self.guess);
-        for _ in 0..LAST_ATTEMPTS {
+        let last = (LAST_WORK / (n * n)).max(ATTEMPTS);
+        for _ in 0..last {
             self.begin_at(z);
             self.leap(z, Self::sweep);
             self.begin_at(z);
@@ -173,7 +175,7 @@ impl Coupled<'_> {
                 return Ok(());
             }
         }
-        Err(LinearError::NoStates { forces: n, sweeps: (ATTEMPTS + LAST_ATTEMPTS) * SWEEPS })
+        Err(LinearError::NoStates { forces: n, sweeps: (ATTEMPTS + last) * SWEEPS })
     }
 
     /// Begins the proximal step of dependent rows at these forces.

@@ -14,7 +14,7 @@ use carom_contact::{
 use crate::contact::independent::{DEPENDENT, SAME};
 use crate::contact::prevented_slips::PreventedSlips;
 use crate::contact::slip_derivatives::SlipDerivatives;
-use crate::model::Contact;
+use crate::model::{Contact, Model};
 use crate::stage::balance::contact_weights;
 use crate::stage::equations::Equations;
 use crate::stage::evaluation::Evaluation;
@@ -374,10 +374,13 @@ impl Evaluation {
 /// Whether the field of pressure beside a single node presses for it, whose row depends on others.
 fn is_covered(equations: &Equations, evaluation: &Evaluation, (k, p): (usize, usize)) -> bool {
     let model = equations.model;
-    let row = evaluation.rows[k].row(p);
-    let acts = row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof]);
     let bounds = model.contacts[k].bounds(&evaluation.at.pairings[k].pairs[p]);
-    acts && bounds && follows(equations, evaluation, (k, p))
+    bounds && acts(model, evaluation.rows[k].row(p)) && follows(equations, evaluation, (k, p))
+}
+
+/// Whether supports leave a row something to move.
+fn acts(model: &Model, row: Row) -> bool {
+    row.entries().any(|(dof, slope)| slope != 0.0 && !model.fixed[dof])
 }
 
 /// Whether a gap whose row depends on others is closed by theirs, but for the share that the row
@@ -388,7 +391,7 @@ pub(crate) fn follows(equations: &Equations, evaluation: &Evaluation, (k, p): (u
     let row = evaluation.rows[k].row(p);
     let size = size_at(contact, row.nodes, &evaluation.y, model.dimension);
     let bounds = contact.bounds(&evaluation.at.pairings[k].pairs[p]);
-    let share = if bounds { SAME } else { DEPENDENT };
+    let share = if bounds && acts(model, row) { SAME } else { DEPENDENT };
     evaluation.answers[k][p].open.abs() <= model.gap_tolerance + share * size
 }
 

@@ -57,7 +57,7 @@ impl Model {
     }
 
     /// The laws of the secondary nodes of each contact at a time; none without friction. `pairs`:
-    /// those of each contact at the start of the step, of which parts between nodes have the laws
+    /// those of each contact at the start of the step, of which those between nodes have the laws
     /// of their places.
     ///
     /// # Errors
@@ -185,7 +185,7 @@ impl Equations<'_> {
         if may_be_held(self.model, self.model.contacts[contact].node(pair)) {
             let mut gaps = Rows::new(self.model.dimension);
             kinematics.measure(&mut at.pair.clone(), y, &mut gaps)?;
-            let start = self.state.closed(contact, pair.node);
+            let start = self.state.past(contact, pair);
             let before = start.map_or([0.0; 2], |pair| pair.tangential.traction);
             if hold(self.model, gaps.row(0), slips, first, increment, before) == 0 {
                 pair.tangential.friction_state = FrictionState::Stick;
@@ -272,8 +272,7 @@ impl Equations<'_> {
         let trial = self.trial(contact, pair, stiffness, slip);
         let law = self.laws[contact][pair.node];
         let pressure = (-pair.lambda).max(0.0);
-        let start =
-            self.state.closed(contact, pair.node).map(|old| old.tangential.friction_state.direction());
+        let start = self.state.past(contact, pair).map(|old| old.tangential.friction_state.direction());
         let slipped = start.is_some_and(|direction| inner(direction, trial) > 0.0);
         let slips = law.slip(pressure, length(slip) * self.rate(part)).value;
         (trial, if slipped { slips } else { law.grip(pressure) })
@@ -309,7 +308,7 @@ impl Equations<'_> {
 
     /// The traction of a pair whose spring of this stiffness would stick.
     fn trial(&self, contact: usize, pair: &Pair, stiffness: f64, slip: Along) -> Along {
-        let is_stretched = self.state.closed(contact, pair.node).is_some();
+        let is_stretched = self.state.past(contact, pair).is_some();
         let before = if is_stretched { pair.tangential.before } else { [0.0; 2] };
         [0, 1].map(|i| before[i] + stiffness * slip[i])
     }
@@ -448,7 +447,7 @@ impl Equations<'_> {
 
     /// Whether a pair was open at the step's start.
     pub(crate) fn closes(&self, contact: usize, pair: &Pair) -> bool {
-        !self.stage.is_static() && self.state.closed(contact, pair.node).is_none()
+        !self.stage.is_static() && self.state.past(contact, pair).is_none()
     }
 }
 

@@ -18,12 +18,13 @@ pub struct Friction {
     pub slip: Option<f64>,
     /// See [`Law::decay`].
     pub decay: f64,
-    /// Reference positions of the secondary nodes.
+    /// Reference positions of the secondary nodes, and of the nodes that stand for what lies
+    /// between them.
     pub places: Vec<Vec<f64>>,
     /// Largest traction of each secondary node; empty if it has none.
     pub limits: Vec<f64>,
     /// Largest traction of the nodes of the secondary side, by their global numbers, between which
-    /// the row of a part of an obstacle lies.
+    /// the row of a part of an obstacle, of an edge or of a point of an edge lies.
     pub limits_of_nodes: HashMap<usize, f64>,
 }
 
@@ -40,8 +41,8 @@ impl Friction {
         }
     }
 
-    /// Whether a node has friction: it is no coefficient of the pressure in a plane of symmetry,
-    /// whose limit is zero.
+    /// Whether a node has friction: its limit is not zero, as that of a coefficient of the pressure
+    /// in a plane of symmetry is, and that of nodes of the primary side without `mu`.
     pub fn acts_on(&self, node: usize) -> bool {
         self.limits.get(node) != Some(&0.0)
     }
@@ -85,7 +86,8 @@ impl Friction {
         let Some(point) = kinematics.between_nodes(pair) else { return Ok(None) };
         let own = self.limit(pair.node);
         let of_node = |node| self.limits_of_nodes.get(&node).copied().unwrap_or(0.0);
-        // A limit of zero is that of a plane of symmetry. Nodes of the primary side have none.
+        // A limit of zero is that of a plane of symmetry. Nodes of the primary side have no limited
+        // traction.
         let is_of_side = |node: &usize| self.limits_of_nodes.contains_key(node);
         let has_own = own == 0.0 || !point.nodes.iter().any(is_of_side);
         let limit = if has_own { own } else { point.mean(of_node) };

@@ -153,7 +153,7 @@ fn closed(
             let closes = if is_node { last != Some(pair.node) } else { pair.active };
             last = Some(pair.node);
             if closes
-                && start.closed(k, pair.node).is_none()
+                && start.past(k, pair).is_none()
                 && kinematics.measure(&mut pair.clone(), &start.y, &mut rows).is_ok()
             {
                 found.push(((k, p), rows.pop()));

@@ -25,9 +25,9 @@ use crate::state::State;
 use crate::workspace::Workspace;
 
 /// A predicted gap of at most this fraction of L is a tie, which round-off does not decide: it is
-/// open, as the published results of these schemes require, unless it has been closed since the
-/// start of the run, when the bodies touched at rest. Otherwise a body pressed at rest would spring
-/// off.
+/// open, as the published results of these schemes require, unless the pair has been closed since
+/// the start of the run, or touches at rest at the start. Otherwise a body pressed at rest would
+/// spring off.
 pub(super) const TIE: f64 = 1e-10;
 
 /// The contacts of a step, and their impulses.

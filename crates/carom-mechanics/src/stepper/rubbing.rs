@@ -24,7 +24,7 @@ pub(super) fn kind(
 ) -> Kind {
     let mut rate = [0.0; 2];
     rate.iter_mut().zip(slips.iter()).for_each(|(rate, row)| *rate = row.along(v));
-    let touches = state.closed(contact, pair.node).is_none();
+    let touches = state.past(contact, pair).is_none();
     let friction_state =
         if touches { FrictionState::of(rate, AT_REST * max_abs(v)) } else { pair.tangential.friction_state };
     let coefficient =

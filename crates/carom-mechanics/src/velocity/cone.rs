@@ -287,7 +287,7 @@ impl Closed {
         let of = |&(k, p): &(usize, usize)| {
             let pair = &state.pairs[k][p];
             let friction_state = pair.tangential.friction_state;
-            let goes_on = friction_state == FrictionState::Stick || before.closed(k, pair.node).is_some();
+            let goes_on = friction_state == FrictionState::Stick || before.past(k, pair).is_some();
             goes_on.then_some(((k, p), friction_state))
         };
         self.places.iter().filter_map(of).collect()

@@ -24,7 +24,7 @@ use crate::velocity::cone::{Closed, Works};
 pub(crate) fn begins_to_stick(state: &State, before: &State, (contact, p): (usize, usize)) -> bool {
     let pair = &state.pairs[contact][p];
     let sticks = |pair: &Pair| pair.tangential.friction_state == FrictionState::Stick;
-    sticks(pair) && before.closed(contact, pair.node).is_some_and(|old| !sticks(old))
+    sticks(pair) && before.past(contact, pair).is_some_and(|old| !sticks(old))
 }
 
 /// Stops the slips of pairs that stick.

@@ -212,8 +212,8 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
             p.small {
                 "Uncertainty: that of the refinement (grid convergence index; of an ensemble its median), at least the \
                  distance to a second scheme and the change of the last halving of the step; plus the largest distance of \
-                 a member from the median, plus a step for instants, plus 5/4 of what averaging over 1/16 of the contact \
-                 changes, for extremes. An order in brackets, above " (HIGHEST)
+                 a member from the median, plus a step for instants, plus 5/4 of what averaging over twice the window \
+                 changes, for extremes and largest means. An order in brackets, above " (HIGHEST)
                 ", shows that values do not converge regularly yet. "
                 @if !reference.refines_mesh() {
                     "The mesh was not refined, so that nothing is established; " code { "mesh = [1, 2, 4]" } " in "

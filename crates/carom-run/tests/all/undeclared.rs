@@ -219,9 +219,9 @@ time = { end = 1.0, step = 0.25, scheme = { kind = "static" } }
     assert!(!given(0.25).contains(&id), "{:?}", given(0.25));
 }
 
-/// A plate with facets of 0.3 on two rigid rollers. Wide ones are held by nodes alone, and chords of
-/// facets lie inside them by h²/8r, 0.12 h with r = 0.31; narrower ones have rows of their own, and
-/// on very wide ones the chords are less than h/100 deep.
+/// A plate with facets of 0.3 on two rigid rollers. Wide ones are held by nodes alone, and chords
+/// of facets lie inside them by h²/8r, 0.12 h with r = 0.31; narrower ones have rows of their own,
+/// and on very wide ones the chords are less than h/100 deep.
 #[test]
 fn a_round_obstacle_between_nodes_is_said() {
     let given = |radius: f64| {

@@ -211,15 +211,20 @@ impl EdgeGap {
     pub(super) fn slip_derivative_into(&self, along: Vector<3>, matrix: &mut [f64]) {
         let size = 3 * self.count();
         let dofs = || (0..self.count()).flat_map(|q| (0..3).map(move |k| (q, k)));
-        let turns: Vec<f64> = dofs().map(|(q, k)| self.changes(q, k).1.dot(&along)).collect();
+        let changes: Vec<([f64; 2], f64)> = dofs()
+            .map(|(q, k)| {
+                let (xi, turned) = self.changes(q, k);
+                (xi, turned.dot(&along))
+            })
+            .collect();
         for (column, (q, k)) in dofs().enumerate() {
-            let (xi, _) = self.changes(q, k);
+            let (xi, turn) = changes[column];
             let opened = self.weight(q) * self.normal[k];
             for (row, (p, i)) in dofs().enumerate() {
                 let (edge, node, sign) = self.node(p);
                 let moved = sign * self.shapes[edge].first[node] * xi[edge] * along[i];
-                let tilted = self.weight(p) * self.normal[i] * turns[column];
-                matrix[row * size + column] = moved - tilted - turns[row] * opened;
+                let tilted = self.weight(p) * self.normal[i] * turn;
+                matrix[row * size + column] = moved - tilted - changes[row].1 * opened;
             }
         }
     }

@@ -177,8 +177,8 @@ impl EdgeToEdge {
     fn candidate(&self, edges: [usize; 2], before: &[f64], now: &[f64]) -> Option<EdgeGap> {
         let gap = self.closest(edges, [0.0; 2], now)?;
         let length = self.shorter(edges, now);
-        // Edges that touch may carry a body at the start. Where they touch at nodes, round-off would
-        // choose of mirror images between the pair of the edges and those of the nodes.
+        // Edges that touch may carry a body at the start. Where they touch at nodes, those carry
+        // it, and round-off would choose between mirror images.
         let is_between = self.is_on(edges, gap.xi, -EDGES_CORNER, -EDGES_CORNER);
         let least = if is_between { ROUND_OFF } else { -ROUND_OFF };
         let met = gap.distance < least * length && gap.distance > -DEEPEST * length;
@@ -241,7 +241,8 @@ impl EdgeToEdge {
                 && known.insert(to)
             {
                 let facet = self.sides[1].facets() + to[1];
-                *pair = Pair { node: to[0], facet, begins: true, ..*pair };
+                let handed = pair.handed + edges[0] as isize - to[0] as isize;
+                *pair = Pair { node: to[0], facet, handed, begins: true, ..*pair };
                 [pair.xi, pair.eta] = gap.xi;
                 let from = self.sides[1].facets() + edges[1];
                 if pair.active && from != pair.facet {

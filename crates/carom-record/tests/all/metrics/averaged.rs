@@ -1,6 +1,6 @@
 //! Metrics after the contact force and the columns of probes have been averaged over a short time.
 
-use carom_record::metrics::averaged::{OF_COLUMN, OF_FORCE, averaged};
+use carom_record::metrics::averaged::{OF_COLUMN, OF_FORCE, averaged, period};
 use carom_record::metrics::table::{COLUMNS, HISTORY};
 use carom_record::{Column, History};
 
@@ -10,8 +10,8 @@ fn the_metrics_of_few_rows_exist() {
     assert!(OF_COLUMN.iter().all(|name| COLUMNS.iter().any(|d| d.name == *name)));
 }
 
-/// By hand: the mean of t over any window inside is t, at the ends it is that of half a window;
-/// of a single spike of 1 over two rows of a window of two steps it is 1/2.
+/// By hand: the mean of t over any window is t, at the ends of the record, too, where the window
+/// shrinks; of a single spike of 1 over two rows of a window of two steps it is 1/2.
 #[test]
 fn means_by_hand() {
     let column = |name: &str| Column {
@@ -25,8 +25,18 @@ fn means_by_hand() {
     spike[5] = 1.0;
     let names = ["time", "ramp", "spike"].map(column).to_vec();
     let history = History::new(names, vec![times.clone(), times, spike]);
-    let averaged = averaged(&history, 2.0, |name| name != "time");
+    let averaged = averaged(&history, |name, _| (name != "time").then_some(2.0));
     let ramp = averaged.column("ramp").unwrap();
-    assert_eq!((ramp[0], ramp[4], ramp[10]), (0.5, 4.0, 9.5));
+    assert_eq!((ramp[0], ramp[4], ramp[10]), (0.0, 4.0, 10.0));
     assert_eq!(averaged.column("spike").unwrap()[4..7], [0.25, 0.5, 0.25]);
+}
+
+/// A vibration about any value has its period, and a ramp that of the record.
+#[test]
+fn periods_by_hand() {
+    let times: Vec<f64> = (0..2001).map(|k| f64::from(k) / 100.0).collect();
+    let vibration: Vec<f64> =
+        times.iter().map(|t| 3.0 + (2.0 * std::f64::consts::PI * t + 0.1).sin()).collect();
+    assert!((period(&times, &vibration) - 1.0).abs() < 0.03);
+    assert_eq!(period(&times, &times), 20.0);
 }
