@@ -12,7 +12,7 @@ use carom_algebra::Vector;
 use carom_solid::{Bounds, FacetShape};
 
 use super::patch::{Feature, Nearest, Patch, PatchPoint, cross, place};
-use crate::constants::{CANCELS, KINK};
+use crate::constants::{CANCELS, EDGES_CROSS, KINK};
 use crate::kinematics::mirror::{Continuation, Continuations, contains, is_mirror, reflected};
 use crate::kinematics::{Depth, Facets, OnFacet};
 
@@ -358,6 +358,22 @@ impl Boundary {
         let along = place(y, nodes[(edge + 1) % self.shape.corners()]) - place(y, nodes[edge]);
         // Counter-clockwise seen from outside: at a convex edge the normals turn about it.
         here.dot(&there) < KINK.cosine && cross(here, there).dot(&along) > 0.0
+    }
+
+    /// Whether a sharp edge at a node crosses a direction.
+    pub(super) fn has_edge_across(&self, node: usize, direction: Vector<3>, y: &[f64]) -> bool {
+        let crosses = |facet: usize, edge: usize| {
+            let (nodes, count) = self.shape.edge(edge);
+            let of_edge = nodes[..count].iter().map(|&k| self.patch(facet).nodes[k]);
+            let along =
+                place(y, self.patch(facet).nodes[nodes[1]]) - place(y, self.patch(facet).nodes[nodes[0]]);
+            let sine = cross(along, direction).norm();
+            of_edge.into_iter().any(|other| other == node)
+                && sine >= EDGES_CROSS * along.norm() * direction.norm()
+                && self.is_sharp(facet, edge, y)
+        };
+        let facets = self.facets_around(node).iter().filter(|&&facet| !self.is_mirror(facet));
+        facets.into_iter().any(|&facet| (0..self.shape.corners()).any(|edge| crosses(facet, edge)))
     }
 
     /// The facets that share a corner with a facet and bend away from it there by more than 30°.

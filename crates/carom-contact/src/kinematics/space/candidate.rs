@@ -105,7 +105,9 @@ impl NodeToPatch {
     }
 
     /// Whether a node is kept out of a facet by the nodes of a sharp edge of it, which the other
-    /// direction of contact keeps out of the node's body, as in the plane (`../candidate.rs`).
+    /// direction of contact keeps out of the node's body, as in the plane (`../candidate.rs`), or
+    /// by the pair of a sharp edge of its own that crosses that one at the node: to the flank of a
+    /// ridge a node that slides over it would be caught.
     pub(super) fn is_left_to_edge(&self, node: usize, at: OnFacet<[f64; 2]>, y: &[f64]) -> bool {
         let Some(own) = &self.own else { return false };
         let OnFacet { facet, xi } = at;
@@ -144,7 +146,9 @@ impl NodeToPatch {
             let (nodes, count) = self.primary.shape().edge(edge);
             let mut points = nodes.into_iter().take(count).map(|k| place(y, patch.nodes[k]));
             let nearest = || patch.at(y, patch.along(edge, patch.nearest_on_edge(y, here, edge))).position;
-            (is_far || beyond > ROUND_OFF) && points.any(meets) && meets(nearest())
+            let along = place(y, patch.nodes[nodes[1]]) - place(y, patch.nodes[nodes[0]]);
+            let crosses = || is_far && own.has_edge_across(node, along, y);
+            (is_far || beyond > ROUND_OFF) && (points.any(meets) || crosses()) && meets(nearest())
         })
     }
 
