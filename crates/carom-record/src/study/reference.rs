@@ -6,9 +6,8 @@
 //!             refinement (convergence.rs) of a member, the median over the members, at least the distance to a
 //!             second scheme and the change of the last halving of the step on the same mesh; plus the largest
 //!             distance of a member from the median, plus for each event the step of the level before over the
-//!             number of phases, or a row if it is longer, plus 5/4 of what averaging over a short time changes, for
-//!             extremes and largest means
-//!             (metrics/averaged.rs)
+//!             number of phases, or a row if it is longer, plus twice what averaging over a short time changes, for
+//!             extremes and largest means (metrics/averaged.rs)
 //! an arm      the same with the arms that differ from it only in step and refinement
 //! exact       the formulas of [exact] of each arm, uncertainty 0, and the metrics that can be computed from these
 //!             columns (exact.rs)
@@ -40,7 +39,10 @@ pub use super::trajectory::{FORCE, Trajectory};
 use crate::Reason;
 use crate::facts::{ContactFacts, Facts};
 use crate::metrics::{self, Metric};
-use crate::order::SAFE;
+
+/// An overshoot, over what averaging over a short time changes: with schemes that do not dissipate,
+/// averaging removes a little more than half of it.
+const OVERSHOOT: f64 = 2.0;
 
 /// Metrics that are instants or differences of instants, and of how many events that a record
 /// resolves to one step.
@@ -192,7 +194,7 @@ impl Reference {
         let instant = self.detected(name);
         let averaged =
             self.averaged.iter().find(|metric| metric.name == name).and_then(|metric| metric.value);
-        let smoothed = single.zip(averaged).map_or(0.0, |(one, other)| SAFE * (one - other).abs());
+        let smoothed = single.zip(averaged).map_or(0.0, |(one, other)| OVERSHOOT * (one - other).abs());
         let between = self.runs.all.last().map_or(1.0, Level::between_phases);
         let uncertainty = refined + between * spread + instant + smoothed;
         Ok(Estimate { value, uncertainty, order: found.order, spread })

@@ -212,7 +212,7 @@ fn reference_values(study: &Study, reference: &Reference) -> Markup {
             p.small {
                 "Uncertainty: that of the refinement (grid convergence index; of an ensemble its median), at least the \
                  distance to a second scheme and the change of the last halving of the step; plus the largest distance of \
-                 a member from the median, plus a step for instants, plus 5/4 of what averaging over twice the window \
+                 a member from the median, plus a step for instants, plus twice what averaging over twice the window \
                  changes, for extremes and largest means. An order in brackets, above " (HIGHEST)
                 ", shows that values do not converge regularly yet. "
                 @if !reference.refines_mesh() {
