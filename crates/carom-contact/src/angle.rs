@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 pub(crate) struct Angle {
     /// In radians.
     pub(crate) radians: f64,
-    /// Its cosine.
+    /// Cosine of the angle.
     pub(crate) cosine: f64,
-    /// Its sine.
+    /// Sine of the angle.
     pub(crate) sine: f64,
 }
 

@@ -282,7 +282,7 @@ impl Turns {
             let arriving = if k == 0 { end(n - 1) - total } else { end(k - 1) };
             let ahead = on[k][0].min(least + total) - start[k];
             let behind = arriving - largest.max(on[k][1] - total);
-            // Of equals the first.
+            // The first place is taken where several are equal.
             if ahead.min(behind) > best.1 + MEETS {
                 best = (k, ahead.min(behind));
             }

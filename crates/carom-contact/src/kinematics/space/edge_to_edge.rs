@@ -382,7 +382,7 @@ impl Kinematics for EdgeToEdge {
                 found.extend(self.candidate(edges, before, now).map(|gap| (edges, gap)));
             }
         });
-        // Of edges that continue each other those that the contact point lies on come first.
+        // Edges on which the contact point lies come before edges that continue them.
         let past = |(_, gap): &([usize; 2], EdgeGap)| gap.xi.map(|xi| (xi.abs() - 1.0).max(0.0)).iter().sum();
         found.sort_by(|a, b| f64::total_cmp(&past(a), &past(b)));
         for (edges, gap) in found {
