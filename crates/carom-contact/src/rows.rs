@@ -151,6 +151,19 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
+    /// Adds a copy of a row without all nodes but those at some places.
+    pub fn push_part(&mut self, row: Row, places: &[usize]) {
+        let d = row.dimension();
+        self.gaps.push(row.gap);
+        self.reversed.push(row.reversed);
+        self.own.push(places.iter().filter(|&&place| place < row.own).count());
+        for &place in places {
+            self.nodes.push(row.nodes[place]);
+            self.gradients.extend_from_slice(&row.gradient[place * d..(place + 1) * d]);
+        }
+        self.starts.push(self.nodes.len());
+    }
+
     /// Adds a linear combination, with these factors, of consecutive rows over the same nodes, from
     /// the row `first` of `rows` on.
     pub fn push_combined(&mut self, rows: &Self, first: usize, factors: &[f64]) {
@@ -295,6 +308,12 @@ impl Row<'_> {
     /// Dimension of the positions.
     pub fn dimension(&self) -> usize {
         if self.nodes.is_empty() { 0 } else { self.gradient.len() / self.nodes.len() }
+    }
+
+    /// Whether the gradient for the node at a place is zero.
+    pub fn is_zero_at(&self, place: usize) -> bool {
+        let d = self.dimension();
+        self.gradient[place * d..(place + 1) * d].iter().all(|slope| *slope == 0.0)
     }
 
     /// Global dofs of the row with the components of ∂g/∂y, in order.

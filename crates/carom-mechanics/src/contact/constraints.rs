@@ -117,6 +117,24 @@ impl Constraints {
         self.directions.push_row(row);
     }
 
+    /// Adds a row without the nodes on which it does not act and its force does not depend: those
+    /// of mortar contact extend over all nodes that they may reach in a step.
+    fn push(&mut self, mut constraint: Constraint, row: Row, direction: Row) {
+        let d = row.dimension();
+        let rests = |place: &usize| row.is_zero_at(*place) && direction.is_zero_at(*place);
+        let resting: Vec<usize> = (0..row.nodes.len()).filter(rests).collect();
+        if resting.is_empty() || row.nodes != direction.nodes {
+            self.rows.push_row(row);
+            self.directions.push_row(direction);
+        } else {
+            let places = needed(&resting, row.nodes.len(), &constraint.curvature);
+            self.rows.push_part(row, &places);
+            self.directions.push_part(direction, &places);
+            constraint.curvature = part_of(&constraint.curvature, row.gradient.len(), d, &places);
+        }
+        self.list.push(constraint);
+    }
+
     /// The rows of an evaluation, with second derivatives.
     pub fn of(equations: &Equations, evaluation: &Evaluation) -> Self {
         let model = equations.model;
@@ -153,19 +171,11 @@ impl Constraints {
                 equations.slip_curvature_into(evaluation, place, &mut derivatives, &mut curvature);
                 constraints.is_skew = true;
             }
-            constraints.rows.push_row(evaluation.rows[k].row(p));
-            constraints.directions.push_row(evaluation.directions(k).row(p));
             let weight = contact_weights(&equations.stage, contact.at_the_end).0;
             let Answer { compliance, yields, open, .. } = *answer;
-            constraints.list.push(Constraint {
-                place,
-                slip: None,
-                weight,
-                compliance,
-                yields,
-                open,
-                curvature,
-            });
+            let constraint = Constraint { place, slip: None, weight, compliance, yields, open, curvature };
+            let direction = evaluation.directions(k).row(p);
+            constraints.push(constraint, evaluation.rows[k].row(p), direction);
         }
         constraints
     }
@@ -185,9 +195,9 @@ impl Constraints {
         equations.slip_derivatives_into(evaluation, (k, p), derivatives);
         let traction = pair.tangential.traction;
         let mut curvature = vec![0.0; slip.gradient.len().pow(2)];
-        self.rows.push_row(slip);
-        self.directions.push_row(slip);
-        let gradient = self.rows.gradient_mut(self.rows.len() - 1);
+        let mut turned_row = Rows::new(slip.dimension());
+        turned_row.push_row(slip);
+        let gradient = turned_row.gradient_mut(0);
         gradient.fill(0.0);
         let held = inner(along, traction);
         for tangent in (0..2).filter(|&tangent| along[tangent] != 0.0) {
@@ -211,7 +221,7 @@ impl Constraints {
             let yields = equations.stick_yields(k, pair, stiffer).unwrap_or(turns);
             [yields, slip.gap - equations.stretch(k, pair, along, stiffer)]
         };
-        self.list.push(Constraint {
+        let constraint = Constraint {
             place: (k, p),
             slip: Some(along),
             weight: contact_weights(&equations.stage, contact.at_the_end).0,
@@ -219,7 +229,8 @@ impl Constraints {
             yields,
             open,
             curvature,
-        });
+        };
+        self.push(constraint, turned_row.row(0), slip);
     }
 
     /// Largest gap that a constraint has to close. The slip of a stick that depends on other rows,
@@ -272,10 +283,10 @@ impl Constraints {
                 compliance => row.along(increment) / compliance,
             };
             self.directions.row(r).add_to(-constraint.weight * multiplier, forces);
+            let moved: Vec<f64> = row.entries().map(|(dof, _)| increment[dof]).collect();
             let curvature = constraint.curvature.chunks_exact(row.gradient.len());
             for ((dof, _), curved) in row.entries().zip(curvature) {
-                let bent: f64 =
-                    curved.iter().zip(row.entries()).map(|(c, (other, _))| c * increment[other]).sum();
+                let bent: f64 = curved.iter().zip(&moved).map(|(c, moved)| c * moved).sum();
                 forces[dof] -= constraint.weight * bent;
             }
         }
@@ -292,6 +303,17 @@ impl Constraints {
         }
     }
 
+    /// The nodes on which each row acts, or on which its force depends.
+    pub(crate) fn acting(&self) -> impl Iterator<Item = usize> {
+        let rows = self.list.iter().zip(self.rows.iter().zip(self.directions.iter()));
+        rows.flat_map(|(constraint, (row, direction))| {
+            // Rows with second derivatives have no other nodes.
+            let all = !constraint.curvature.is_empty() || row.nodes != direction.nodes;
+            let acts = move |place: &usize| all || !row.is_zero_at(*place) || !direction.is_zero_at(*place);
+            (0..row.nodes.len()).filter(acts).map(move |place| row.nodes[place])
+        })
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.list.len()
@@ -302,13 +324,41 @@ impl Constraints {
         self.list.is_empty()
     }
 
-    /// The nodes of all rows, ascending.
+    /// The nodes on which the rows act, ascending.
     pub(crate) fn nodes(&self) -> Vec<usize> {
-        let mut nodes: Vec<usize> = self.rows.iter().flat_map(|row| row.nodes.iter().copied()).collect();
+        let mut nodes: Vec<usize> = self.acting().collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes
     }
+}
+
+/// The places of the nodes of a row that do not rest, or on which its force depends.
+fn needed(resting: &[usize], nodes: usize, curvature: &[f64]) -> Vec<usize> {
+    let size = curvature.len().isqrt();
+    let d = size / nodes;
+    let bends = |place: usize| {
+        let components = place * d..(place + 1) * d;
+        let of_rows = components.start * size..components.end * size;
+        let of_columns = || curvature.chunks_exact(size).flat_map(|row| &row[components.clone()]);
+        curvature[of_rows].iter().any(|c| *c != 0.0) || of_columns().any(|c| *c != 0.0)
+    };
+    let rests = |place: &usize| resting.binary_search(place).is_ok() && (size == 0 || !bends(*place));
+    (0..nodes).filter(|place| !rests(place)).collect()
+}
+
+/// The entries of a matrix over the `size` components of a row, or of none, that belong to the
+/// nodes at some places.
+fn part_of(matrix: &[f64], size: usize, d: usize, places: &[usize]) -> Vec<f64> {
+    if matrix.is_empty() {
+        return Vec::new();
+    }
+    let mut part = Vec::with_capacity((places.len() * d).pow(2));
+    for row in places.iter().flat_map(|place| place * d..(place + 1) * d) {
+        let entries = &matrix[row * size..(row + 1) * size];
+        places.iter().for_each(|place| part.extend_from_slice(&entries[place * d..(place + 1) * d]));
+    }
+    part
 }
 
 /// Derivative of the direction of a pair's force to the positions at the end of the step, over the

@@ -411,11 +411,11 @@ fn no_factor(model: &Model) -> LinearError {
 }
 
 fn spans(model: &Model, boundary: &[usize], rows: &Constraints) -> bool {
-    let is_in = |node: &usize| boundary.binary_search(node).is_ok();
+    let is_in = |node: usize| boundary.binary_search(&node).is_ok();
     if model.points.is_empty() {
-        return rows.rows.iter().flat_map(|row| row.nodes).all(is_in);
+        return rows.acting().all(is_in);
     }
-    interface(model, rows).iter().all(is_in)
+    interface(model, rows).into_iter().all(is_in)
 }
 
 /// The nodes that the rows act on, ascending; of points those that carry them.

@@ -1,31 +1,18 @@
 //! Quadrature points and gaps of the secondary facets at one configuration.
 
-use super::cut::{Opposed, Regions};
+use super::cut::Regions;
 use super::joint::Joint;
 use super::multipliers::MOST;
-use super::opposite::PointGap;
-use super::turned::Turned;
-
-/// A point of quadrature with the gap there.
-#[derive(Clone, Debug)]
-pub(super) struct Measured {
-    pub(super) at: Opposed,
-    pub(super) gap: PointGap,
-    /// Weight of quadrature, over the reference surface, times that with which the point faces the
-    /// primary.
-    pub(super) area: f64,
-    /// Derivatives of the latter, where it is neither 0 nor 1.
-    pub(super) turned: Option<Box<Turned>>,
-}
+use super::patch::Patch;
 
 /// A secondary facet at one configuration.
 #[derive(Debug, Default)]
 pub(super) struct Faced {
     /// Whether its points have been found.
     pub(super) is_measured: bool,
-    pub(super) points: Vec<Measured>,
-    /// Terms of the gradient from the motion of the ends of the primary, with the area 1.
-    pub(super) borders: Vec<Measured>,
+    /// Its points, by the facet of the primary that they face; with the area 1, also terms of the
+    /// gradient from the motion of the ends of the primary.
+    pub(super) patches: Vec<Patch>,
     /// Joints of the primary over the facet.
     pub(super) joints: Vec<Joint>,
     /// Range of ξ that faces the primary.

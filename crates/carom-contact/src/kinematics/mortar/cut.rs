@@ -85,6 +85,13 @@ impl Region {
         }
     }
 
+    /// Whether a part of a secondary facet with a normal may lie in the region of a facet that it
+    /// faces: neither border has all of it behind.
+    pub(super) fn may_have_part_of(&self, facet: Facet, normal: Vector<2>, y: Places) -> bool {
+        let is_beyond = |line, sign| ends_beyond(facet, y, line, sign).iter().any(|end| *end >= 0.0);
+        normal.dot(&self.normal) < 0.0 && is_beyond(self.start, 1.0) && is_beyond(self.end, -1.0)
+    }
+
     /// The part of a secondary facet with a normal, in ξ, that lies in the region of a facet that
     /// it faces.
     pub(super) fn part_of(&self, facet: Facet, normal: Vector<2>, y: Places) -> Option<[f64; 2]> {
@@ -114,8 +121,9 @@ impl Region {
 
 /// The part of a facet, in ξ, on one side of a line that it crosses once at most: where (x − x₀)·b
 /// times a sign is not negative.
-fn part_beyond(facet: Facet, y: Places, [on, along]: [Vector<2>; 2], sign: f64) -> Option<[f64; 2]> {
-    let [at_start, at_end] = [0, 1].map(|end| sign * (y.at(facet.nodes[end]) - on).dot(&along));
+fn part_beyond(facet: Facet, y: Places, line: [Vector<2>; 2], sign: f64) -> Option<[f64; 2]> {
+    let [on, along] = line;
+    let [at_start, at_end] = ends_beyond(facet, y, line, sign);
     let root = |rises: f64| {
         let start = -1.0 + 2.0 * at_start / (at_start - at_end);
         bisected(-1.0, 1.0, start, |xi| {
@@ -130,6 +138,11 @@ fn part_beyond(facet: Facet, y: Places, [on, along]: [Vector<2>; 2], sign: f64) 
         [false, true] => Some([root(1.0), 1.0]),
         [true, false] => Some([-1.0, root(-1.0)]),
     }
+}
+
+/// How far the ends of a facet lie beyond a line, times the length of its direction.
+fn ends_beyond(facet: Facet, y: Places, [on, along]: [Vector<2>; 2], sign: f64) -> [f64; 2] {
+    [0, 1].map(|end| sign * (y.at(facet.nodes[end]) - on).dot(&along))
 }
 
 /// A point of quadrature on a secondary facet.

@@ -10,11 +10,12 @@ use std::sync::PoisonError;
 use carom_algebra::Vector;
 
 use super::border::{self, Border, End};
-use super::cache::{Cache, Faced, Measured};
+use super::cache::{Cache, Faced};
 use super::cut::{Crossing, Facing, Meeting, Opposed, Regions};
 use super::joint::Joint;
 use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
+use super::patch::{Measured, Patch};
 use super::sides::Mortar;
 use super::turned::{Own, Turned, faces};
 use crate::constants::MORTAR_COVERED;
@@ -27,7 +28,7 @@ const STRAIGHT: f64 = 1e-10;
 impl Mortar {
     /// Calls a function with the secondary facets at positions `y`, of which those of some parts
     /// have been measured.
-    pub(super) fn at<T>(&self, y: Places, parts: &[Part], of: impl FnOnce(&[Faced]) -> T) -> T {
+    pub(super) fn at<T>(&self, y: Places, parts: &[Part], of: impl FnOnce(&mut [Faced]) -> T) -> T {
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let places = || self.surface.iter().flat_map(|&node| y.coordinates(node)).copied();
         if cache.places.is_empty() || !cache.places.iter().copied().eq(places()) {
@@ -58,14 +59,31 @@ impl Mortar {
             }
             let own = self.secondary.facet(part.facet);
             let Facing { points, ends, borders, joints } = facing(part.facet, own);
-            of.borders = borders.iter().filter_map(|at| self.border(own, at, y)).collect();
             let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
-            of.points = measured.filter(|point| point.area > 0.0).collect();
+            let borders = borders.iter().filter_map(|at| self.border(own, at, y));
+            for point in measured.filter(|point| point.area > 0.0).chain(borders) {
+                let known = of.patches.iter().position(|patch| patch.facet == point.at.facet);
+                let at = known.unwrap_or_else(|| {
+                    of.patches.push(Patch::new(point.at.facet, own.nodes.len()));
+                    of.patches.len() - 1
+                });
+                of.patches[at].points.push(point);
+            }
             of.joints = joints.iter().filter_map(|at| self.joint(own, at, y)).collect();
             of.ends = ends;
             of.is_measured = true;
         }
-        faced[facet].carriers = Some(self.carriers(of_facet, faced));
+        let carriers = self.carriers(of_facet, faced);
+        let kept = std::array::from_fn(|number| {
+            of_facet.get(number).and_then(|&of| self.kept_depths.get(of)).copied().unwrap_or(0.0)
+        });
+        let value = |number: usize, xi: f64| -> f64 {
+            let carried = (0..=self.degree).filter(|&other| carriers[other] == number);
+            carried.map(|other| bernstein(self.degree, other, xi)).sum()
+        };
+        let of = &mut faced[facet];
+        of.carriers = Some(carriers);
+        of.patches.iter_mut().for_each(|patch| patch.weigh(value, kept));
     }
 
     fn measured(&self, own: Facet, at: Opposed, y: Places) -> Option<Measured> {
@@ -73,7 +91,8 @@ impl Mortar {
         let gap = self.opposite.gap(&at, place.position, y)?;
         let (weight, turned) = Turned::of(&Own { tangent: place.tangent, normal: place.normal }, &gap);
         let area = weight * at.weight * own.at(self.reference(), at.xi).measure;
-        Some(Measured { at, gap, area, turned })
+        let shape = own.shape.at(at.xi);
+        Some(Measured { at, gap, area, turned, shape })
     }
 
     /// The term of the gradient from the motion of an end of the primary over a secondary facet.
@@ -103,7 +122,8 @@ impl Mortar {
         let end = End { place: position, along, turns, shape, nodes: facet.nodes.len() };
         let border = Border::new(&own.at(y, at.xi), &end, jumps, of_jump)?;
         let at = Opposed { xi: at.xi, weight: 0.0, facet: at.facet, eta: at.eta };
-        Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None })
+        let shape = own.shape.at(at.xi);
+        Some(Measured { at, gap: PointGap::Border(border), area: 1.0, turned: None, shape })
     }
 
     /// The term of the second derivative from the motion of a joint of the primary over a secondary
@@ -162,7 +182,8 @@ impl Mortar {
     fn cover(&self, multiplier: &Multiplier, faced: &[Faced]) -> f64 {
         let of_part = |part: &Part| -> f64 {
             let value = |point: &Measured| bernstein(self.degree, part.polynomial, point.at.xi);
-            faced[part.facet].points.iter().map(|point| value(point) * point.area).sum()
+            let points = faced[part.facet].patches.iter().flat_map(|patch| &patch.points);
+            points.filter(|point| !point.is_border()).map(|point| value(point) * point.area).sum()
         };
         multiplier.parts.iter().map(of_part).sum::<f64>() / multiplier.area
     }

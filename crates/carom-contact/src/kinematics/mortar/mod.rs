@@ -14,18 +14,21 @@ mod joint;
 mod measured;
 mod multipliers;
 mod opposite;
+mod patch;
 mod sides;
 mod symmetry;
 mod turned;
 mod weighted;
 mod windows;
 
+use std::sync::Mutex;
+
 use carom_algebra::Vector;
 
 pub use self::cut::Quadrature;
 use self::opposite::Opposite;
+use self::patch::Kind;
 pub use self::sides::Mortar;
-use self::weighted::Sample;
 use super::obstacle::Tip;
 use super::passed::Passed;
 use super::{Kinematics, NodalPressure};
@@ -38,8 +41,12 @@ impl Mortar {
     /// Share of the area of a multiplier that faces the primary in the reference configuration.
     fn cover_at_start(&self, multiplier: usize) -> f64 {
         let Some(all) = self.opposite.whole(multiplier) else { return 0.0 };
-        let samples = self.samples(&all, self.reference()).unwrap_or_default();
-        samples.iter().filter(|sample| !sample.is_border()).map(|sample| sample.share).sum()
+        let mut covered = 0.0;
+        let measured = self.each_patch(&all, self.reference(), |part, patch| {
+            let shares = patch.shares(part.polynomial).filter(|(point, _)| !point.is_border());
+            covered += shares.map(|(_, share)| share).sum::<f64>();
+        });
+        measured.map_or(0.0, |()| covered / self.multipliers[multiplier].area)
     }
 
     /// Weighted gap of a multiplier in the reference configuration, without what it keeps.
@@ -75,12 +82,26 @@ impl Mortar {
         !size.is_finite() || sum.norm() <= ROUND_OFF * size && moment.abs() <= ROUND_OFF * size * arm
     }
 
-    /// Moves the recorded contact point of a pair to that of the sample on the middle facet of its
-    /// window that weighs most.
-    fn mark(pair: &mut Pair, samples: &[Sample]) {
-        let of_facet = samples.iter().filter(|sample| sample.facet == pair.facet && !sample.is_border());
-        let heaviest = of_facet.max_by(|a, b| a.share.total_cmp(&b.share));
-        pair.xi = heaviest.map_or(pair.xi, |sample| sample.eta.clamp(-1.0, 1.0));
+    /// The weighted gap of a pair; its recorded contact point becomes that on the middle facet of
+    /// its window that weighs most.
+    ///
+    /// # Errors
+    /// If a point has no unique closest point on the primary.
+    fn gap(&self, pair: &mut Pair, y: Places) -> Result<f64, ContactError> {
+        let mut gap = 0.0;
+        let mut heaviest: Option<(f64, f64)> = None;
+        self.each_patch(&pair.clone(), y, |part, patch| {
+            gap += patch.gap(part.polynomial);
+            if patch.facet == pair.facet {
+                for (point, share) in patch.shares(part.polynomial).filter(|(point, _)| !point.is_border()) {
+                    if heaviest.is_none_or(|(most, _)| share >= most) {
+                        heaviest = Some((share, point.at.eta));
+                    }
+                }
+            }
+        })?;
+        pair.xi = heaviest.map_or(pair.xi, |(_, eta)| eta.clamp(-1.0, 1.0));
+        Ok(gap / self.multipliers[pair.node].area)
     }
 }
 
@@ -101,6 +122,8 @@ impl Kinematics for Mortar {
             if cover > 0.0 { depth / cover } else { 0.0 }
         };
         self.kept_depths = depths.iter().enumerate().map(depth).collect();
+        // What has been integrated without them.
+        self.cache = Mutex::default();
         let all: f64 = (0..self.nodes.len()).filter_map(|of| self.gap_at_start(of)).map(f64::abs).sum();
         let kept: f64 = depths.iter().map(|depth| depth.abs()).sum();
         let share = if all > 0.0 { kept / all } else { 0.0 };
@@ -174,27 +197,17 @@ impl Kinematics for Mortar {
     }
 
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let samples = self.samples(pair, Places::new(y, 2))?;
-        Self::mark(pair, &samples);
-        if samples.is_empty() {
+        let y = Places::new(y, 2);
+        let gap = self.gap(pair, y)?;
+        let stencil = self.stencil(pair);
+        let Some(slopes) = self.row((pair, Kind::Gap), &stencil, y)? else {
             // Nothing is left for a pressure to act on.
             pair.active = false;
             pair.lambda = 0.0;
             rows.push_open();
             return Ok(());
-        }
-        let stencil = self.stencil(pair);
-        let mut gap = 0.0;
-        let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
-        for sample in &samples {
-            gap += sample.share * sample.distance();
-            sample.gradient(stencil.adder(self, sample, &mut slopes));
-        }
-        debug_assert!(
-            self.is_balanced(&stencil.nodes, &slopes, Places::new(y, 2)),
-            "mortar row {}",
-            pair.node
-        );
+        };
+        debug_assert!(self.is_balanced(&stencil.nodes, &slopes, y), "mortar row {}", pair.node);
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
         Ok(())
     }
@@ -220,38 +233,18 @@ impl Kinematics for Mortar {
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        let stencil = self.stencil(pair);
-        curvature.fill(0.0);
-        let mut of_sample = [0.0; OF_SAMPLE];
-        for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            let count = sample.curvature_into(&mut of_sample);
-            stencil.add_matrix(self, &sample, &of_sample[..4 * count * count], curvature);
-        }
-        self.add_joints(pair, Places::new(y, 2), &stencil, curvature, |joint| joint.normal);
+        self.derivative_into((pair, Kind::Gap), Places::new(y, 2), curvature);
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let stencil = self.stencil(pair);
-        let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
-        for sample in self.samples(pair, Places::new(y, 2))? {
-            sample.gap.slip(stencil.adder(self, &sample, &mut slopes));
-        }
+        let row = self.row((pair, Kind::Slip), &stencil, Places::new(y, 2))?;
+        let slopes = row.unwrap_or_else(|| vec![Vector::ZERO; stencil.nodes.len()]);
         rows.push_of_many(0.0, &stencil.nodes, stencil.own, &slopes);
         Ok(())
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], _: usize, matrix: &mut [f64]) {
-        let stencil = self.stencil(pair);
-        matrix.fill(0.0);
-        let mut of_sample = [0.0; OF_SAMPLE];
-        for sample in self.samples(pair, Places::new(y, 2)).unwrap_or_default() {
-            sample.gap.slip_derivative_into(&mut of_sample);
-            let count = sample.gap.count();
-            stencil.add_matrix(self, &sample, &of_sample[..4 * count * count], matrix);
-        }
-        self.add_joints(pair, Places::new(y, 2), &stencil, matrix, |joint| joint.tangent);
+        self.derivative_into((pair, Kind::Slip), Places::new(y, 2), matrix);
     }
 }
-
-/// Most entries of a matrix over a point, the nodes opposite, and the tangent.
-const OF_SAMPLE: usize = 4 * turned::MOST * turned::MOST;

@@ -11,34 +11,13 @@
 
 use carom_algebra::Vector;
 
-use super::cache::{Faced, Measured};
 use super::cut::{Quadrature, Rule};
 use super::joint::Joint;
 use super::multipliers::{Part, bernstein};
-use super::opposite::PointGap;
+use super::patch::{Kind, NODES, Patch, SIZE};
 use super::sides::Mortar;
-use super::turned::Turned;
 use crate::pair::{ContactError, Pair};
 use crate::places::Places;
-
-/// A point of quadrature in the weighted gap of a multiplier.
-#[derive(Debug)]
-pub(super) struct Sample {
-    /// Weight of the gap in the weighted gap.
-    pub(super) share: f64,
-    /// The secondary facet, and the weights of its nodes in the point, N_a, and in its tangent.
-    own: usize,
-    values: [f64; 4],
-    slopes: [f64; 4],
-    pub(super) gap: PointGap,
-    /// Derivatives of the weight with which the point faces the primary, where that is partly.
-    turned: Option<Box<Turned>>,
-    /// Initial depth that is kept, by which the gap is larger.
-    kept: f64,
-    /// Facet of the primary, and the closest point on it; 0 of an obstacle.
-    pub(super) facet: usize,
-    pub(super) eta: f64,
-}
 
 /// The nodes of a weighted gap: those of the secondary side, then those of the primary. Near the
 /// tip of a fold a side meets itself at nodes of its own, which occur once.
@@ -48,111 +27,14 @@ pub(super) struct Stencil {
     pub(super) own: usize,
 }
 
-/// Most nodes of a facet in the plane.
-const NODES: usize = 4;
-
-/// Places of the nodes of two facets, or a facet and a carrier, in a stencil.
-struct Placed {
-    own: [usize; NODES],
-    others: [usize; NODES],
-}
-
-/// A node of a stencil on which the point or a node of the primary facet depends, with its weight.
-type Weighted = (usize, f64);
-
-impl Sample {
-    /// The gap, with the initial depth that is kept; 0 at a border.
-    pub(super) fn distance(&self) -> f64 {
-        if self.is_border() { 0.0 } else { self.gap.distance() + self.kept }
-    }
-
-    /// Whether it only adds to the derivatives.
-    pub(super) fn is_border(&self) -> bool {
-        matches!(self.gap, PointGap::Border(_))
-    }
-
-    /// Calls a function with the gradients of the weighted gap of the point, over its weight, by
-    /// the point, the nodes opposite, and the tangent.
-    pub(super) fn gradient(&self, mut of: impl FnMut(usize, Vector<2>)) {
-        self.gap.gradient(self.kept, &mut of);
-        if let Some(turned) = &self.turned {
-            turned.gradient(self.distance(), of);
-        }
-    }
-
-    /// Second derivative of the weighted gap of the point, over its weight. Returns the number of
-    /// vectors by which it is.
-    pub(super) fn curvature_into(&self, matrix: &mut [f64]) -> usize {
-        let Some(turned) = &self.turned else {
-            self.gap.curvature_into(matrix);
-            return self.gap.count();
-        };
-        turned.curvature_into(self.distance(), &self.gap, matrix);
-        turned.count()
-    }
-}
-
 impl Stencil {
-    fn place(&self, mortar: &Mortar, sample: &Sample) -> Placed {
+    /// Places of the nodes of a secondary facet and of what it faces.
+    fn places(&self, own: &[usize], others: &[usize]) -> ([usize; 2 * NODES], usize) {
+        let mut places = [0; 2 * NODES];
+        let nodes = own.iter().chain(others);
         let place = |node: usize| self.nodes.iter().position(|&other| other == node).unwrap_or_default();
-        let mut placed = Placed { own: [0; NODES], others: [0; NODES] };
-        let own = mortar.secondary.facet(sample.own).nodes;
-        let others = mortar.opposite.nodes(sample.facet);
-        placed.own.iter_mut().zip(own).for_each(|(at, &node)| *at = place(node));
-        placed.others.iter_mut().zip(others).for_each(|(at, &node)| *at = place(node));
-        placed
-    }
-
-    /// A function that adds the part of a row of a point, number 0, or of a node opposite to a row
-    /// over the stencil.
-    pub(super) fn adder<'a>(
-        &self,
-        mortar: &Mortar,
-        sample: &'a Sample,
-        sum: &'a mut [Vector<2>],
-    ) -> impl FnMut(usize, Vector<2>) + 'a {
-        let placed = self.place(mortar, sample);
-        move |p, slope| {
-            placed.each(p, sample, |(place, weight)| sum[place] += slope * (sample.share * weight));
-        }
-    }
-
-    /// Adds a matrix over a point, the nodes opposite and perhaps the tangent, two components each,
-    /// to one over the stencil.
-    pub(super) fn add_matrix(&self, mortar: &Mortar, sample: &Sample, matrix: &[f64], sum: &mut [f64]) {
-        let placed = self.place(mortar, sample);
-        let n = matrix.len().isqrt();
-        let count = n / 2;
-        let size = 2 * self.nodes.len();
-        for p in 0..count {
-            placed.each(p, sample, |(row, of_row)| {
-                for q in 0..count {
-                    placed.each(q, sample, |(column, of_column)| {
-                        let weight = sample.share * of_row * of_column;
-                        for i in 0..2 {
-                            let from = (2 * p + i) * n + 2 * q;
-                            let to = (2 * row + i) * size + 2 * column;
-                            sum[to] += weight * matrix[from];
-                            sum[to + 1] += weight * matrix[from + 1];
-                        }
-                    });
-                }
-            });
-        }
-    }
-}
-
-impl Placed {
-    /// Calls a function with the nodes of the stencil on which number `p` of the vectors of a gap
-    /// depends: the point, number 0, a node opposite, or, last, the tangent.
-    fn each(&self, p: usize, sample: &Sample, mut of: impl FnMut(Weighted)) {
-        let is_tangent = p == sample.gap.count();
-        if p > 0 && !is_tangent {
-            of((self.others[p - 1], 1.0));
-            return;
-        }
-        let nodes = self.own.iter().zip(if is_tangent { sample.slopes } else { sample.values });
-        nodes.filter(|(_, value)| *value != 0.0).for_each(|(&place, value)| of((place, value)));
+        places.iter_mut().zip(nodes).for_each(|(at, &node)| *at = place(node));
+        (places, own.len() + others.len())
     }
 }
 
@@ -171,51 +53,93 @@ impl Mortar {
         Stencil { nodes, own }
     }
 
-    /// The gaps of a pair at the points of quadrature that face its window.
+    /// Calls a function with the parts of a pair's multiplier that face its window, each with its
+    /// secondary facet.
     ///
     /// # Errors
     /// If a point has no unique closest point on the primary.
-    pub(super) fn samples(&self, pair: &Pair, y: Places) -> Result<Vec<Sample>, ContactError> {
+    pub(super) fn each_patch(
+        &self,
+        pair: &Pair,
+        y: Places,
+        mut of: impl FnMut(&Part, &mut Patch),
+    ) -> Result<(), ContactError> {
         let multiplier = &self.multipliers[pair.node];
-        let kept = self.kept_depths.get(pair.node).copied().unwrap_or(0.0);
         self.at(y, &multiplier.parts, |of_facets| {
-            let mut samples = Vec::new();
-            for &Part { facet, polynomial, .. } in &multiplier.parts {
-                let shape = self.secondary.facet(facet).shape;
-                let Faced { points, borders, carriers, .. } = &of_facets[facet];
-                let carriers = carriers.unwrap_or_default();
-                let carried: Vec<usize> =
-                    (0..=self.degree).filter(|&other| carriers[other] == polynomial).collect();
-                for Measured { at, gap, area, turned } in
-                    points.iter().chain(borders).filter(|_| !carried.is_empty())
-                {
-                    if !self.opposite.is_in_window(pair, at.facet) {
-                        continue;
+            for part in &multiplier.parts {
+                let faced = &mut of_facets[part.facet];
+                let carriers = faced.carriers.unwrap_or_default();
+                if !carriers[..=self.degree].contains(&part.polynomial) {
+                    continue;
+                }
+                for patch in &mut faced.patches {
+                    if self.opposite.is_in_window(pair, patch.facet) {
+                        patch.unless_regular(multiplier.node, pair)?;
+                        of(part, patch);
                     }
-                    let of_point = Pair { facet: at.facet, xi: at.eta, ..*pair };
-                    gap.unless_regular(multiplier.node, &of_point)?;
-                    let values = carried.iter().map(|&number| bernstein(self.degree, number, at.xi));
-                    let shape = shape.at(at.xi);
-                    samples.push(Sample {
-                        share: values.sum::<f64>() * area / multiplier.area,
-                        own: facet,
-                        values: shape.values,
-                        slopes: shape.first,
-                        gap: *gap,
-                        turned: turned.clone(),
-                        kept,
-                        facet: at.facet,
-                        eta: at.eta,
-                    });
                 }
             }
-            Ok(samples)
+            Ok(())
         })
+    }
+
+    /// The row of a pair's gap or slip, over its stencil; none if nothing of its part of the side
+    /// faces the window.
+    ///
+    /// # Errors
+    /// If a point has no unique closest point on the primary.
+    pub(super) fn row(
+        &self,
+        (pair, kind): (&Pair, Kind),
+        stencil: &Stencil,
+        y: Places,
+    ) -> Result<Option<Vec<Vector<2>>>, ContactError> {
+        let share = self.multipliers[pair.node].area.recip();
+        let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
+        let mut faces = false;
+        self.each_patch(pair, y, |part, patch| {
+            faces = true;
+            let own = self.secondary.facet(part.facet).nodes;
+            let (places, count) = stencil.places(own, self.opposite.nodes(patch.facet));
+            let row = patch.row(kind, part.polynomial);
+            places[..count].iter().zip(row).for_each(|(&at, slope)| slopes[at] += *slope * share);
+        })?;
+        Ok(faces.then_some(slopes))
+    }
+
+    /// Overwrites a matrix over the stencil of a pair with the derivative of the row of its gap or
+    /// slip.
+    pub(super) fn derivative_into(&self, (pair, kind): (&Pair, Kind), y: Places, matrix: &mut [f64]) {
+        let stencil = self.stencil(pair);
+        let size = 2 * stencil.nodes.len();
+        let share = self.multipliers[pair.node].area.recip();
+        matrix.fill(0.0);
+        let added = self.each_patch(pair, y, |part, patch| {
+            let own = self.secondary.facet(part.facet).nodes;
+            let (places, count) = stencil.places(own, self.opposite.nodes(patch.facet));
+            let of_patch = patch.derivative(kind, part.polynomial);
+            for (row, entries) in of_patch.chunks_exact(SIZE).take(2 * count).enumerate() {
+                let sums = &mut matrix[(2 * places[row / 2] + row % 2) * size..][..size];
+                for (&place, entry) in places[..count].iter().zip(entries.chunks_exact(2)) {
+                    sums[2 * place] += share * entry[0];
+                    sums[2 * place + 1] += share * entry[1];
+                }
+            }
+        });
+        // Without a unique closest point the row has been refused.
+        if added.is_err() {
+            matrix.fill(0.0);
+            return;
+        }
+        self.add_joints(pair, y, &stencil, matrix, |joint| match kind {
+            Kind::Gap => joint.normal,
+            Kind::Slip => joint.tangent,
+        });
     }
 
     /// Adds the terms of the joints of the primary to the derivative of a row of a pair; `jump`:
     /// that of the row at a joint.
-    pub(super) fn add_joints(
+    fn add_joints(
         &self,
         pair: &Pair,
         y: Places,

@@ -131,9 +131,9 @@ impl Mortar {
         let boxes: Vec<Bounds> = order.iter().map(|&facet| swept(surface, &hulls[1], facet)).collect();
         let all = boxes.iter().fold(Bounds::EMPTY, Bounds::union);
         let own = (0..self.secondary.facets()).filter(|&facet| self.used[facet]);
-        let own: Vec<(usize, Bounds)> =
-            own.map(|facet| (facet, swept(&self.secondary, &hulls[0], facet))).collect();
-        if own.iter().all(|(_, bounds)| !bounds.meets(&all)) {
+        let own = own.map(|facet| (facet, swept(&self.secondary, &hulls[0], facet)));
+        let own: Vec<(usize, Bounds)> = own.filter(|(_, bounds)| bounds.meets(&all)).collect();
+        if own.is_empty() {
             return faced;
         }
         let regions = ends.map(|y| self.opposite.regions(order, y));
@@ -145,7 +145,7 @@ impl Mortar {
                 let is_faced = |k: usize| {
                     let (other, region) = &regions[k].of_facets[place];
                     folds.as_ref().is_none_or(|folds| meet(folds, &regions[k].turns, [facet, *other]))
-                        && region.part_of(own, normals[k], ends[k]).is_some()
+                        && region.may_have_part_of(own, normals[k], ends[k])
                 };
                 if is_faced(0) || is_faced(1) {
                     window.get_or_insert(Window { first: place, last: place }).last = place;
