@@ -7,6 +7,7 @@
 use carom_algebra::Vector;
 use carom_solid::FacetShape;
 
+use crate::constants::ON_FACET;
 use crate::kinematics::mirror::Continuation;
 use crate::kinematics::{Depth, Facets, OnFacet, Surface};
 use crate::places::Places;
@@ -38,11 +39,17 @@ impl Surface {
     /// of either facet at a convex joint, in front of both at a concave one, which is nearest to a
     /// remote point by round-off only.
     fn is_outside_joint(&self, facet: usize, xi: f64, point: Vector<2>, y: Places) -> bool {
-        // In a plane of symmetry the mirror image continues the facet.
-        let neighbour = self.neighbour(facet, xi > 0.0).filter(|&neighbour| !self.is_mirror(neighbour));
-        let Some(neighbour) = neighbour else {
+        let Some(neighbour) = self.neighbour(facet, xi > 0.0) else {
             return self.is_outside(facet, xi, point, y);
         };
+        if self.is_mirror(neighbour) {
+            // The mirror image continues the facet, but what lies past the plane of symmetry is no
+            // part of this half.
+            let end = self.facet(facet).at(y, xi).position;
+            let past = (point - end).dot(&self.facet(neighbour).at(y, 0.0).normal);
+            let is_past = past > ON_FACET * self.length(facet, y);
+            return is_past || self.is_outside(facet, xi, point, y);
+        }
         let [first, second] = if xi > 0.0 { [facet, neighbour] } else { [neighbour, facet] };
         let sine = self.kink(first, second, y).sine;
         let [before, after] = [(first, 1.0), (second, -1.0)].map(|(f, xi)| self.is_outside(f, xi, point, y));

@@ -36,6 +36,8 @@
 //! its mean acceleration, and the impulse M J is one of the supports, too: it works at the mean
 //! velocity, which is not that of the path Δy.
 
+use std::collections::BTreeSet;
+
 use carom_algebra::sums::dot;
 use carom_contact::{Row, Rows};
 use carom_time::Stage;
@@ -119,19 +121,25 @@ impl Works {
         Self { external, contact: dot(increment, &means.contact), friction }
     }
 
-    /// Correction of the works of a step in which gaps close: contact impulses times the mean
-    /// velocity, less their work along the path Δy that is already booked. `next` has velocities
-    /// before the projection. The α family counts impulses of contacts whose velocities are
-    /// projected; other schemes know mean forces only, and count those of all contacts. The work of
-    /// supports and obstacles is booked with the projection (`carried.rs`).
+    /// Correction of the works of a step in which gaps of the contacts `closing` close: their
+    /// impulses times the mean velocity, less their work along the path Δy that is already booked.
+    /// `next` has velocities before the projection. Other contacts have none: what closes elsewhere
+    /// does not change their work. The α family counts impulses pair by pair; other schemes know
+    /// the mean forces on the nodes. The work of supports and obstacles is booked with the
+    /// projection (`carried.rs`).
     pub(crate) fn beyond_path(
         equations: &Equations,
         last: &Evaluation,
         next: &State,
         dt: f64,
-        means: &Means,
+        (means, closing): (&Means, &BTreeSet<usize>),
     ) -> Self {
         let Equations { model, state, stage, .. } = equations;
+        let mut closing = closing.clone();
+        closing.retain(|&k| model.contacts[k].projects);
+        if closing.is_empty() {
+            return Self::default();
+        }
         let increment = &last.at.increment;
         let mut path = increment.clone();
         // Supports and obstacles have their own motion, and massless dofs no impulse.
@@ -140,11 +148,14 @@ impl Works {
         }
         model.points.carry(&mut path);
         if stage.works_at_both_ends {
-            return Self::beyond_path_of_pairs(equations, last, &path, dt);
+            return Self::beyond_path_of_pairs(equations, last, &path, dt, &closing);
         }
         let at = |forces: &[f64], i: usize| forces.get(i).copied().unwrap_or(0.0);
         let mut works = Self::default();
-        for i in 0..increment.len() {
+        let nodes: BTreeSet<usize> =
+            closing.iter().flat_map(|&k| &model.contacts[k].surface).copied().collect();
+        let d = model.dimension;
+        for i in nodes.into_iter().flat_map(|node| node * d..(node + 1) * d) {
             let beyond = path[i] - increment[i];
             works.contact += beyond * (means.contact[i] - state.f_contact[i]);
             works.friction += beyond * (at(&means.friction, i) - at(&state.f_friction, i));
@@ -153,7 +164,13 @@ impl Works {
     }
 
     /// [`Works::beyond_path`] of the α family, pair by pair.
-    fn beyond_path_of_pairs(equations: &Equations, last: &Evaluation, path: &[f64], dt: f64) -> Self {
+    fn beyond_path_of_pairs(
+        equations: &Equations,
+        last: &Evaluation,
+        path: &[f64],
+        dt: f64,
+        closing: &BTreeSet<usize>,
+    ) -> Self {
         let Equations { model, state, stage, .. } = equations;
         let increment = &last.at.increment;
         let is_constraint = friction_is_constraint(equations);
@@ -167,8 +184,7 @@ impl Works {
         let mut normal = 0.0;
         let mut friction = 0.0;
         let mut rows = Rows::new(model.dimension);
-        let contacts = model.contacts.iter().enumerate().filter(|(_, contact)| contact.projects);
-        for (k, contact) in contacts {
+        for (k, contact) in closing.iter().map(|&k| (k, &model.contacts[k])) {
             for (p, pair) in last.at.pairings[k].pairs.iter().enumerate().filter(|(_, pair)| pair.active) {
                 normal += pair.lambda * beyond(k, last.rows[k].row(p), false);
                 if contact.friction.is_some() {
@@ -185,7 +201,7 @@ impl Works {
             }
         }
         each_slip(model, state, |k, _, traction, row| {
-            if model.contacts[k].projects {
+            if closing.contains(&k) {
                 friction -= traction * beyond(k, row, true);
             }
         });

@@ -52,8 +52,13 @@ impl PreventedSlips {
             let bounds = model.contacts[k].bounds(pair(k, p));
             if bounds { same_contact(model, row).max(least) } else { least }
         };
+        // What lies between nodes, as the corner of an obstacle, may be in another contact than the
+        // nodes on which it depends: these come first, with the friction of the places where they
+        // lie.
+        let is_of_node = |&(k, p): &(usize, usize)| pair(k, p).node < model.contacts[k].kinematics.nodes();
+        let (of_nodes, between): (Vec<_>, Vec<_>) = evaluation.pressing().partition(is_of_node);
         let mut set = Independent::default();
-        for (k, p) in evaluation.pressing() {
+        for (k, p) in of_nodes.into_iter().chain(between) {
             let row = evaluation.rows[k].row(p);
             let name = (k, p, 0);
             let is_row = if is_elastic(&name) {

@@ -2,6 +2,8 @@
 //! stick begins. And single steps of backward Euler with contact implicit in velocity
 //! (`in_velocity.rs`) in place of a step that is not accepted.
 
+use std::collections::BTreeSet;
+
 use carom_algebra::sums::dot;
 use carom_contact::{Pairing, Rows};
 use carom_time::schemes::backward_euler::BackwardEuler;
@@ -173,12 +175,11 @@ impl Stepper for Implicit {
         }
         contact_forces_into(model, &mut next, &solved.rows);
         ledger::account(&equations, &solved, &mut next, strain, dt, &means);
-        let closes =
-            !self.in_velocity && !equations.stage.is_static() && !difference(&next, state).is_empty();
-        let impulses = if closes {
-            Works::beyond_path(&equations, &solved, &next, dt, &means)
-        } else {
+        let impulses = if self.in_velocity || equations.stage.is_static() {
             Works::default()
+        } else {
+            let closing: BTreeSet<usize> = difference(&next, state).into_iter().map(|(k, _)| k).collect();
+            Works::beyond_path(&equations, &solved, &next, dt, (&means, &closing))
         };
         let accumulates = |contact: &Contact| contact.interface.direction().accumulates();
         let conserves = model.contacts.iter().any(accumulates);

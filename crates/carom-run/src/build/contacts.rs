@@ -18,6 +18,7 @@ use super::between_sides::{Bodies, Which, longest, without};
 use super::branching::branching;
 use super::given::in_space_and_time;
 use super::obstacles::{self, Moving};
+use super::repeated::repeated;
 use super::side::Side;
 
 /// The contacts of a case.
@@ -35,6 +36,7 @@ pub(super) fn contacts(
     let contacts: Vec<_> =
         made.filter_map(|made| made.map_err(|problem| problems.push(problem)).ok()).collect();
     problems.extend(branching(parts, &contacts));
+    problems.extend(repeated(case, &contacts));
     contacts
 }
 

@@ -11,6 +11,7 @@ mod mortar_tie;
 mod motions;
 mod obstacles;
 mod overlaps;
+mod repeated;
 pub(crate) mod side;
 mod supports;
 pub mod tie_links;

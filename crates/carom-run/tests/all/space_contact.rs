@@ -473,3 +473,44 @@ time = { scheme = { kind = "central-difference" }, step = 0.00055, end = 0.06985
     let share = ledger.created() / ledger.scale();
     assert!(share < 0.02, "{share:e} of the energy is created");
 }
+
+/// Two equal balls that meet node on node, where facets of a symmetric mesh turn by 22° across
+/// edges and by 30° across the corner, leave along their line, and exchange their velocities.
+#[test]
+fn balls_that_meet_at_a_corner_of_facets_leave_along_their_line() {
+    let case = |element: &str, size: f64, scheme: &str| {
+        format!(
+            r#"
+            dimension = 3
+            material = [{{ name = "m", law = "neo-hookean", density = 1.0, young = 5000.0, poisson = 0.3 }}]
+            contact = [{{ name = "c", secondary = "a.sphere", primary = "b.sphere" }}]
+            time = {{ end = 0.08, step = 2e-3, scheme = {scheme} }}
+            [[body]]
+            name = "a"
+            material = "m"
+            element = "{element}"
+            mesh = {{ shape = "ball", radius = 0.5, center = [-1.004, 0.0, 0.0], size = {size} }}
+            velocity = [2.0, 0.0, 0.0]
+            [[body]]
+            name = "b"
+            material = "m"
+            element = "{element}"
+            mesh = {{ shape = "ball", radius = 0.5, center = [0.0, 0.0, 0.0], size = {size} }}
+            "#
+        )
+    };
+    let conserving = "{ kind = \"energy-momentum\" }";
+    let impulses = "{ kind = \"moreau-jean\", theta = 0.5 }";
+    for (element, size, scheme) in
+        [("Hex8", 0.3, conserving), ("Hex8", 0.3, impulses), ("Tet4", 0.3, conserving)]
+    {
+        let end = finish(simulation(&case(element, size, scheme), &[""; 0]));
+        let model = end.model();
+        let mut momenta = vec![0.0; model.dofs()];
+        model.mass.multiply_into(&end.state().v, &mut momenta);
+        let nodes = model.parts[0].nodes();
+        let [x, y, z] = [0, 1, 2].map(|i| nodes.clone().map(|node| momenta[3 * node + i]).sum::<f64>());
+        assert!(x.abs() < 0.1, "{element}, {scheme}: {x}");
+        assert!(y.abs() < 1e-12 && z.abs() < 1e-12, "{element}, {scheme}: {y} {z}");
+    }
+}

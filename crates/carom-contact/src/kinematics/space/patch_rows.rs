@@ -71,9 +71,13 @@ impl OnFacets for NodeToPatch {
     }
 
     fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
+        // Around a corner, facets that do not share an edge turn by more than those that do.
         let joined = self.primary.joined(facet, joint);
-        let is_smooth = |&other: &usize| {
-            self.primary.is_of_side(other) && (other == facet || self.primary.is_smooth(facet, other, y))
+        let edges = self.primary.shape().corners();
+        let across = |one: usize| (0..edges).filter_map(move |edge| self.primary.across(one, edge));
+        let is_smooth = |&one: &usize| {
+            let mut beside = across(one).filter(|other| joined.contains(other));
+            self.primary.is_of_side(one) && beside.all(|other| self.primary.is_smooth(one, other, y))
         };
         joined.len() > 1 && joined.iter().all(is_smooth)
     }
