@@ -197,8 +197,8 @@ pub const WARNINGS: [Entry; 34] = [
     },
     Entry {
         id: "dependent-gaps",
-        why: "forces and their sum are right, but how the pressure is shared between these nodes and others is not \
-              determined: pressures there may be anything",
+        why: "without friction forces and their sum are right, but how the pressure is shared between these nodes and \
+              others is not determined: pressures there may be anything, and with different mu so may friction",
         advice: "enforcement = \"augmented\"; the finer side as the primary one if the secondary one is held; a side \
                  without the nodes that supports or ties hold",
         rule: Rule::Record(record::dependent_gaps),
