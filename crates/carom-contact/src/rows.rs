@@ -151,7 +151,7 @@ impl Rows {
         self.starts.push(self.nodes.len());
     }
 
-    /// Adds a copy of a row without all nodes but those at some places.
+    /// Adds a copy of a row with only those of its nodes that are at some places.
     pub fn push_part(&mut self, row: Row, places: &[usize]) {
         let d = row.dimension();
         self.gaps.push(row.gap);

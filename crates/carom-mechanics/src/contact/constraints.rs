@@ -283,6 +283,9 @@ impl Constraints {
                 compliance => row.along(increment) / compliance,
             };
             self.directions.row(r).add_to(-constraint.weight * multiplier, forces);
+            if constraint.curvature.is_empty() {
+                continue;
+            }
             let moved: Vec<f64> = row.entries().map(|(dof, _)| increment[dof]).collect();
             let curvature = constraint.curvature.chunks_exact(row.gradient.len());
             for ((dof, _), curved) in row.entries().zip(curvature) {
@@ -307,7 +310,7 @@ impl Constraints {
     pub(crate) fn acting(&self) -> impl Iterator<Item = usize> {
         let rows = self.list.iter().zip(self.rows.iter().zip(self.directions.iter()));
         rows.flat_map(|(constraint, (row, direction))| {
-            // Rows with second derivatives have no other nodes.
+            // `push` has left out the other nodes of rows with second derivatives.
             let all = !constraint.curvature.is_empty() || row.nodes != direction.nodes;
             let acts = move |place: &usize| all || !row.is_zero_at(*place) || !direction.is_zero_at(*place);
             (0..row.nodes.len()).filter(acts).map(move |place| row.nodes[place])
@@ -333,7 +336,8 @@ impl Constraints {
     }
 }
 
-/// The places of the nodes of a row that do not rest, or on which its force depends.
+/// The places of all nodes of a row but those among `resting`, on which it does not act, on which
+/// its force does not depend either.
 fn needed(resting: &[usize], nodes: usize, curvature: &[f64]) -> Vec<usize> {
     let size = curvature.len().isqrt();
     let d = size / nodes;

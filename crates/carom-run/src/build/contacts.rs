@@ -36,7 +36,8 @@ pub(super) fn contacts(
     let contacts: Vec<_> =
         made.filter_map(|made| made.map_err(|problem| problems.push(problem)).ok()).collect();
     problems.extend(branching(parts, &contacts));
-    problems.extend(repeated(case, &contacts));
+    let part_of = |node: usize| parts.partition_point(|part| part.nodes().end <= node);
+    problems.extend(repeated(case, &contacts, part_of));
     contacts
 }
 

@@ -565,8 +565,8 @@ fn the_velocity_of_an_obstacle_may_jump_where_it_meets_a_body() {
     }
 }
 
-/// A block that lands does not change the works of another one, far away, that already stands on
-/// springs: those of both are the sums of separate runs.
+/// A block that lands does not change the works of another one, far away, that bounces on springs:
+/// those of both are the sums of separate runs.
 #[test]
 fn an_impact_does_not_change_the_works_of_another_contact() {
     let lands = block(0.0, [0.5, -3.0], &format!("{FIXED}mu = 0.3"));

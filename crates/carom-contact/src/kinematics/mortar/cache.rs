@@ -10,8 +10,8 @@ use super::patch::Patch;
 pub(super) struct Faced {
     /// Whether its points have been found.
     pub(super) is_measured: bool,
-    /// Its points, by the facet of the primary that they face; with the area 1, also terms of the
-    /// gradient from the motion of the ends of the primary.
+    /// Its points, by the facet of the primary that they face. Among them are the terms of the
+    /// gradient from the motion of the ends of the primary (`border.rs`).
     pub(super) patches: Vec<Patch>,
     /// Joints of the primary over the facet.
     pub(super) joints: Vec<Joint>,

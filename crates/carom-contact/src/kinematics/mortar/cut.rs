@@ -86,7 +86,8 @@ impl Region {
     }
 
     /// Whether a part of a secondary facet with a normal may lie in the region of a facet that it
-    /// faces: neither border has all of it behind.
+    /// faces: neither border has all of it behind. Where both cross the facet in the wrong order
+    /// there is none in fact, and a window is wider than necessary.
     pub(super) fn may_have_part_of(&self, facet: Facet, normal: Vector<2>, y: Places) -> bool {
         let is_beyond = |line, sign| ends_beyond(facet, y, line, sign).iter().any(|end| *end >= 0.0);
         normal.dot(&self.normal) < 0.0 && is_beyond(self.start, 1.0) && is_beyond(self.end, -1.0)

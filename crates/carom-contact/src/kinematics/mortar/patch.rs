@@ -38,7 +38,7 @@ pub(super) struct Measured {
     pub(super) at: Opposed,
     pub(super) gap: PointGap,
     /// Weight of quadrature, over the reference surface, times that with which the point faces the
-    /// primary.
+    /// primary; 1 at a border, which covers no area.
     pub(super) area: f64,
     /// Derivatives of the latter, where it is neither 0 nor 1.
     pub(super) turned: Option<Box<Turned>>,
@@ -148,6 +148,7 @@ impl Patch {
 
     /// The points with their weights for a polynomial.
     pub(super) fn shares(&self, number: usize) -> impl Iterator<Item = (&Measured, f64)> {
+        debug_assert_eq!(self.points.len(), self.values.len(), "weighed before it is integrated");
         let weighted = self.points.iter().zip(&self.values);
         weighted.map(move |(point, values)| (point, values[number] * point.area))
     }

@@ -295,6 +295,21 @@ impl Boundary {
         here.dot(&there) > KINK.cosine
     }
 
+    /// Whether a facet turns away from the mean of all those at a corner, as at the tip of a cone.
+    pub(super) fn is_tip(&self, corner: usize, y: &[f64]) -> bool {
+        let mean = self.normal_at_corner(corner, y);
+        let corners = self.shape.corners();
+        let turns = |&facet: &usize| {
+            let patch = self.patch(facet);
+            let Some(place) = patch.nodes[..corners].iter().position(|&node| node == corner) else {
+                return false;
+            };
+            let normal = patch.at(y, patch.along(place, 0.0)).normal;
+            normal.dot(&mean) < KINK.cosine * mean.norm()
+        };
+        self.facets_around(corner).iter().filter(|facet| !self.is_mirror(**facet)).any(turns)
+    }
+
     /// Normals of two facets where they meet: in the middle of their common edge, or at the corner.
     fn normals_where_met(&self, facet: usize, other: usize, y: &[f64]) -> [Vector<3>; 2] {
         let corners = self.shape.corners();

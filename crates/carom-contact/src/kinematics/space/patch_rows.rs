@@ -71,7 +71,7 @@ impl OnFacets for NodeToPatch {
     }
 
     fn is_blunt(&self, facet: usize, joint: u8, y: &[f64]) -> bool {
-        // Around a corner, facets that do not share an edge turn by more than those that do.
+        // Around a corner, facets that share no edge may turn by more: only a tip is no joint.
         let joined = self.primary.joined(facet, joint);
         let edges = self.primary.shape().corners();
         let across = |one: usize| (0..edges).filter_map(move |edge| self.primary.across(one, edge));
@@ -79,7 +79,11 @@ impl OnFacets for NodeToPatch {
             let mut beside = across(one).filter(|other| joined.contains(other));
             self.primary.is_of_side(one) && beside.all(|other| self.primary.is_smooth(one, other, y))
         };
-        joined.len() > 1 && joined.iter().all(is_smooth)
+        let is_tip = || {
+            let corner = self.primary.patch(facet).nodes.get(usize::from(joint)).copied();
+            corner.filter(|_| usize::from(joint) < edges).is_some_and(|corner| self.primary.is_tip(corner, y))
+        };
+        joined.len() > 1 && joined.iter().all(is_smooth) && !is_tip()
     }
 
     fn nodes_with(&self, pair: &Pair) -> Vec<usize> {
