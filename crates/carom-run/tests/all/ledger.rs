@@ -466,7 +466,7 @@ fn blocks(of: &[&str], scheme: &str, phase: f64) -> Case {
     case(&text_of_blocks(of, scheme, phase), &[""; 0])
 }
 
-/// The same up to a time.
+/// A case of [`blocks`] up to a time.
 fn blocks_until(of: &[&str], scheme: &str, end: f64) -> Case {
     case(&text_of_blocks(of, scheme, 0.0), &[format!("time.end={end}")])
 }

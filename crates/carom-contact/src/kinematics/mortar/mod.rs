@@ -122,7 +122,7 @@ impl Kinematics for Mortar {
             if cover > 0.0 { depth / cover } else { 0.0 }
         };
         self.kept_depths = depths.iter().enumerate().map(depth).collect();
-        // What has been integrated without them.
+        // Integrals without them are out of date.
         self.cache = Mutex::default();
         let all: f64 = (0..self.nodes.len()).filter_map(|of| self.gap_at_start(of)).map(f64::abs).sum();
         let kept: f64 = depths.iter().map(|depth| depth.abs()).sum();

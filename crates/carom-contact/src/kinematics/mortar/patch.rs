@@ -25,7 +25,7 @@ const BOTH: usize = 2 * NODES;
 /// Most components of the vectors on which the gap of a point depends.
 const OF_POINT: usize = 2 * turned::MOST;
 
-/// What is integrated: the gap, whose rows are gradients, or the slip.
+/// A quantity that is integrated: the gap, whose rows are gradients, or the slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Gap,
