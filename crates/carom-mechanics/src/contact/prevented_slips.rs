@@ -52,9 +52,8 @@ impl PreventedSlips {
             let bounds = model.contacts[k].bounds(pair(k, p));
             if bounds { same_contact(model, row).max(least) } else { least }
         };
-        // What lies between nodes, as the corner of an obstacle, may be in another contact than the
-        // nodes on which it depends: these come first, with the friction of the places where they
-        // lie.
+        // Rows of nodes come first, with the friction of the places where the nodes lie. The row of
+        // a corner of an obstacle, or of an edge, may depend on nodes of another contact.
         let is_of_node = |&(k, p): &(usize, usize)| pair(k, p).node < model.contacts[k].kinematics.nodes();
         let (of_nodes, between): (Vec<_>, Vec<_>) = evaluation.pressing().partition(is_of_node);
         let mut set = Independent::default();

@@ -52,6 +52,7 @@ mod quantity;
 mod reactions;
 mod rebound;
 mod reduce;
+mod repeated;
 mod restart;
 mod reversal;
 mod rough_corners;

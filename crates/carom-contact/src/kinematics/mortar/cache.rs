@@ -10,7 +10,7 @@ use super::patch::Patch;
 pub(super) struct Faced {
     /// Whether its points have been found.
     pub(super) is_measured: bool,
-    /// Its points, by the facet of the primary that they face. Among them are the terms of the
+    /// Points of quadrature, by the facet of the primary that they face, and the terms of the
     /// gradient from the motion of the ends of the primary (`border.rs`).
     pub(super) patches: Vec<Patch>,
     /// Joints of the primary over the facet.
