@@ -44,6 +44,7 @@ pub fn sums<const K: usize, const T: usize>(
 }
 
 /// The larger one of two numbers; NaN if one of them is, which [`f64::max`] ignores.
+#[inline]
 pub fn max_or_nan(a: f64, b: f64) -> f64 {
     if b > a || b.is_nan() { b } else { a }
 }

@@ -31,7 +31,7 @@ pub use interface::{
 };
 pub use kinematics::{
     AtJoints, BetweenNodes, Boundary, Carrier, ClosedSurface, Combined, ContactPoint, Crossings, Depth,
-    Detection, EdgePoints, EdgeToEdge, Faceted, Kinematics, Mortar, NodalPressure, NodeToFacet,
+    Detection, EdgePoints, EdgeToEdge, Faceted, InPlane, Kinematics, Mortar, NodalPressure, NodeToFacet,
     NodeToObstacle, NodeToPatch, NodesWithDepth, Obstacle, OnFacet, Outward, Passed, Polyline, PolylineError,
     Quadrature, Side, SpaceHit, Surface, Swept, SweptEdges, SweptPatch, SweptTest, Tip, TipToFacet,
 };

@@ -211,7 +211,7 @@ impl Simulation {
         let before = self.fallback.is_some().then(|| report.clone());
         let step = self.state.step;
         let end = self.grid.time(step) + self.grid.length(step + 1);
-        let state = match (self.grid_step(false, report, watch), before) {
+        let state = match (self.grid_or_first_step(report, watch), before) {
             (Err(stopped), Some(before)) if stopped.is_of_the_method(end) => {
                 let time = self.state.time;
                 let dt = self.grid.length(step + 1);
@@ -223,6 +223,24 @@ impl Simulation {
         };
         self.work.put(std::mem::replace(&mut self.state, state));
         Ok(())
+    }
+
+    /// The state at the next grid time, by the stepper. The start of a run may lack balance, as
+    /// where a support lets go or loads act at once, by as much as a load step of any length has to
+    /// give: where it cannot, what is lacking fades until the end of the grid step.
+    fn grid_or_first_step(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<State, Stopped> {
+        let stepped = self.grid_step(false, report, watch);
+        let end = self.grid.time(0) + self.grid.length(1);
+        let may_fade = self.state.step == 0 && self.stepper.is_static();
+        match stepped {
+            Err(stopped) if may_fade && stopped.is_of_the_method(end) => {
+                self.work.fade_until = Some(end);
+                let faded = self.grid_step(false, report, watch);
+                self.work.fade_until = None;
+                faded.map_err(|again| if again.is_of_the_method(end) { stopped } else { again })
+            }
+            _ => stepped,
+        }
     }
 
     /// The state at the next grid time, by the stepper or the fallback.

@@ -36,6 +36,9 @@ pub struct Workspace {
     pub(crate) linear: LinearProblem,
     /// The last iterations, to explain a rejection.
     pub(crate) trace: Trace,
+    /// Time until which what load steps lack of balance at the start fades; none if they reach
+    /// balance in each.
+    pub(crate) fade_until: Option<f64>,
 }
 
 impl Workspace {
@@ -52,6 +55,7 @@ impl Workspace {
             undeclared: Undeclared::new(model),
             linear: LinearProblem::new(model),
             trace: Trace::default(),
+            fade_until: None,
         }
     }
 

@@ -7,7 +7,7 @@
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-use carom_case::{Case, InitialSpec, Problem, Velocities};
+use carom_case::{Case, InitialSpec, Problem, Units, Velocities};
 use carom_mechanics::model::{Manufactured, Model, Tie, past_of};
 use carom_mechanics::{Grid, InitialState, State, inside};
 use carom_record::{Manifest, Status, last_checkpoint};
@@ -84,6 +84,15 @@ pub(crate) fn before(spec: &InitialSpec, case: &Case, model: &Model) -> Result<I
             why,
             "start from a run of the same bodies",
         ));
+    }
+    if case.units.declared && old.units.declared && case.units != old.units {
+        let named = |units: &Units| format!("{}, {}, {}", units.length, units.time, units.mass);
+        let why = format!(
+            "it has {}, the case {}; numbers are not converted",
+            named(&old.units),
+            named(&case.units)
+        );
+        return Err(wrong("the runs do not have the same units".into(), why, "give both the same [units]"));
     }
 
     let mut before = InitialState {

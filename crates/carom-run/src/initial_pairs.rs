@@ -68,11 +68,11 @@ pub(crate) fn found<'a>(
             (true, true) => f64::INFINITY,
             (true, false) => left_by_another(spec) * length,
             // Where the obstacle stands as that run left it, the bodies are as deep as there.
-            (false, true) if !spec.enforcement.is_exact() => {
+            (false, true) => {
                 let depth = depths().get(before).copied().unwrap_or(0.0);
                 f64::max(DEEP * length, (1.0 + DEEP) * depth)
             }
-            (false, _) => DEEP * length,
+            (false, false) => DEEP * length,
         });
         let pairs = if goes_on && is_there {
             pressed.to_vec()

@@ -163,9 +163,9 @@ pub trait Body: Geometry {
     /// Smallest J over the quadrature points of consecutive cells, which remember `past`.
     fn min_det_f(&self, cells: Range<usize>, y: &[f64], past: &Past) -> f64;
 
-    /// Largest equivalent plastic strain over the quadrature points of a cell, which remember
-    /// `past`.
-    fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64;
+    /// Largest equivalent plastic strain over all quadrature points, which remember `past`; NaN if
+    /// a law does not tell it.
+    fn plastic_strain(&self, past: &Past) -> f64;
 
     /// Stress and strain at the quadrature points of a cell, which remember `past`.
     ///

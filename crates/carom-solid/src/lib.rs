@@ -57,7 +57,7 @@ pub use point_locator::PointLocator;
 pub use points::LANES;
 pub use positions::Positions;
 pub use quality::WorstCell;
-pub use shape::{Hull, LineShape, line_shape};
+pub use shape::{Hull, LineShape, line_powers, line_shape};
 pub use solid::{Solid, SolidError};
 pub use tree::{REBUILT, Tree};
 pub use triangles::{Triangles, TrianglesError};

@@ -136,6 +136,11 @@ pub trait Kernel: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Whether its steps are load steps, without inertia.
+    fn is_static(&self) -> bool {
+        false
+    }
+
     /// Whether its only stage is Newmark's y = y_s + Δt v_s + Δt² (…), so that a contact law may
     /// replace y_s + Δt v_s by another position.
     fn has_predictor(&self) -> bool {

@@ -379,6 +379,17 @@ impl ObstacleMotion {
         *self == Self::Fixed
     }
 
+    /// Whether the obstacle may move across a line in the plane with a normal.
+    pub fn may_cross(&self, normal: [f64; 2]) -> bool {
+        match self {
+            Self::Fixed => false,
+            Self::Prescribed { moves, rotate, .. } => {
+                rotate.is_some() || moves.iter().any(|(axis, _)| normal[*axis] != 0.0)
+            }
+            Self::Free { .. } => true,
+        }
+    }
+
     /// Number of nodes that carry the obstacle in a space of some dimension: those of a simplex if
     /// it turns, otherwise one; 0 if it is fixed.
     pub fn nodes(&self, dimension: usize) -> usize {

@@ -7,7 +7,7 @@
 use carom_algebra::{Mat, Threads};
 
 use super::obstacle::Tip;
-use super::{BetweenNodes, Kinematics, NodalPressure, Passed};
+use super::{BetweenNodes, InPlane, Kinematics, NodalPressure, Passed};
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::rows::Rows;
 
@@ -261,7 +261,7 @@ impl Kinematics for Combined {
         part.area(node)
     }
 
-    fn in_plane_of_symmetry(&self, node: usize) -> Vec<usize> {
+    fn in_plane_of_symmetry(&self, node: usize) -> Option<InPlane> {
         let (part, node) = self.of(node);
         part.in_plane_of_symmetry(node)
     }

@@ -125,16 +125,12 @@ impl Gap {
         // Every vector of the stencil is a scalar per node times n or t.
         let phi = |p: usize| if p == 0 { 1.0 } else { -self.weight(p - 1) };
         let slope = |p: usize| if p == 0 { 0.0 } else { self.shape.first[p - 1] };
-        let nn = n.outer(&n);
-        let tt = t.outer(&t);
-        let tn = t.outer(&n);
-        let nt = n.outer(&t);
-        for p in 0..count {
-            for q in 0..count {
-                let mut block: Mat<2> = tn * (-phi(p) * slope(q) / a);
-                block += nt * (-slope(p) * phi(q) / a);
-                block += tt * (-kappa / (a * j * j) * phi(p) * phi(q));
-                block += nn * (-gap / a * slope(p) * slope(q));
+        let [of_tn, of_tt, of_nn] = [-a.recip(), -kappa / (a * j * j), -gap / a];
+        for q in 0..count {
+            let beside_t = n * (of_tn * slope(q)) + t * (of_tt * phi(q));
+            let beside_n = t * (of_tn * phi(q)) + n * (of_nn * slope(q));
+            for p in 0..count {
+                let block: Mat<2> = (t * phi(p)).outer(&beside_t) + (n * slope(p)).outer(&beside_n);
                 for i in 0..d {
                     for k in 0..d {
                         curvature[(p * d + i) * count * d + q * d + k] = block.0[i][k];

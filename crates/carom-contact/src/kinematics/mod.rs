@@ -85,6 +85,15 @@ pub struct NodalPressure {
     pub nominal: f64,
 }
 
+/// Where both sides of a contact in the plane meet a plane of symmetry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InPlane {
+    /// Global numbers of the nodes of both sides there.
+    pub nodes: Vec<usize>,
+    /// Unit normal of the plane of symmetry.
+    pub normal: [f64; 2],
+}
+
 /// A point of a facet or an edge, between its nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct BetweenNodes<'a> {
@@ -272,11 +281,11 @@ pub trait Kinematics: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Global numbers of the nodes at which both sides meet a plane of symmetry, if a secondary
-    /// node, given by index, stands for the coefficient of a pressure field there: no tangential
-    /// traction acts in such a plane.
-    fn in_plane_of_symmetry(&self, _node: usize) -> Vec<usize> {
-        Vec::new()
+    /// Where both sides meet a plane of symmetry, if a secondary node, given by index, stands for
+    /// the coefficient of a pressure field there: no tangential traction acts in such a plane as
+    /// long as neither side moves across it.
+    fn in_plane_of_symmetry(&self, _node: usize) -> Option<InPlane> {
+        None
     }
 
     /// Pressures at the nodes of the secondary side, where the pairs are coefficients of a pressure

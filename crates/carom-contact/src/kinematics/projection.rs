@@ -4,7 +4,7 @@
 //! The derivative of −(y_N − y_S)·t is a = J² − (y_N − y_S)·y_S''; a > 0 marks a minimum.
 
 use carom_algebra::Vector;
-use carom_solid::FacetShape;
+use carom_solid::{FacetShape, line_powers};
 
 use crate::places::Places;
 
@@ -27,7 +27,58 @@ pub struct FacetPoint {
     pub measure: f64,
 }
 
+/// A facet relative to a place, by powers of ξ: cheap at many ξ.
+#[derive(Clone, Copy)]
+pub(crate) struct Curve {
+    powers: [Vector<2>; 4],
+}
+
+impl Curve {
+    /// Position relative to the place.
+    pub(crate) fn position(&self, xi: f64) -> Vector<2> {
+        let [p, q, r, s] = self.powers;
+        p + (q + (r + s * xi) * xi) * xi
+    }
+
+    /// Derivative of the position by ξ.
+    pub(crate) fn tangent(&self, xi: f64) -> Vector<2> {
+        let [_, q, r, s] = self.powers;
+        q + (r * 2.0 + s * (3.0 * xi)) * xi
+    }
+
+    /// Second derivative of the position by ξ.
+    fn second(&self, xi: f64) -> Vector<2> {
+        let [_, _, r, s] = self.powers;
+        r * 2.0 + s * (6.0 * xi)
+    }
+
+    /// First and second derivative by ξ of half the squared distance from the place.
+    fn distance_slope(&self, xi: f64) -> (f64, f64) {
+        let position = self.position(xi);
+        let tangent = self.tangent(xi);
+        (position.dot(&tangent), tangent.dot(&tangent) + position.dot(&self.second(xi)))
+    }
+}
+
 impl Facet<'_> {
+    /// The facet relative to a place.
+    pub(crate) fn curve(&self, from: Vector<2>, y: Places) -> Curve {
+        let mut places = [Vector::ZERO; 4];
+        places.iter_mut().zip(self.nodes).for_each(|(place, &node)| *place = y.at(node) - from);
+        Curve { powers: line_powers(&places[..self.nodes.len()]) }
+    }
+
+    /// Position at ξ alone.
+    pub(crate) fn position(&self, y: Places, xi: f64) -> Vector<2> {
+        let first = y.at(self.nodes[0]);
+        first + self.curve(first, y).position(xi)
+    }
+
+    /// Derivative of the position by ξ.
+    pub(crate) fn tangent(&self, y: Places, xi: f64) -> Vector<2> {
+        self.curve(y.at(self.nodes[0]), y).tangent(xi)
+    }
+
     /// Position of the facet at ξ, with its derivatives.
     pub fn at(&self, y: Places, xi: f64) -> FacetPoint {
         self.seen_from(Vector::ZERO, y, xi)
@@ -56,22 +107,16 @@ impl Facet<'_> {
         self.shape == FacetShape::Point
     }
 
-    /// First and second derivative by ξ of half the squared distance between the facet and a point.
-    fn distance_slope(&self, y: Places, from: Vector<2>, xi: f64) -> (f64, f64) {
-        let c = self.seen_from(from, y, xi);
-        let d = -c.position;
-        (-d.dot(&c.tangent), c.tangent.dot(&c.tangent) - d.dot(&c.second))
-    }
-
     /// Coordinate ξ of the closest point by Newton's method from a good guess; `None` if it does
     /// not converge to a minimum within |ξ| ≤ `reach`.
     pub fn closest_from(&self, y: Places, from: Vector<2>, start: f64, reach: f64) -> Option<f64> {
         if self.is_point() {
             return Some(0.0);
         }
+        let curve = self.curve(from, y);
         let mut xi = start;
         for _ in 0..40 {
-            let (slope, a) = self.distance_slope(y, from, xi);
+            let (slope, a) = curve.distance_slope(xi);
             if a <= 0.0 || !a.is_finite() {
                 return None;
             }
@@ -96,18 +141,8 @@ impl Facet<'_> {
             return Some(0.0);
         }
         let at = |k: usize| reach * (2.0 * k as f64 / SAMPLES as f64 - 1.0);
-        // The curve relative to `from` in powers of ξ, up to the cubic one: samples only bracket.
-        let middle = self.seen_from(from, y, 0.0);
-        let end = self.seen_from(from, y, 1.0);
-        let p = middle.position;
-        let q = middle.tangent;
-        let r = middle.second * 0.5;
-        let s = (end.second - middle.second) * (1.0 / 6.0);
-        let slope_at = |xi: f64| {
-            let position = p + (q + (r + s * xi) * xi) * xi;
-            let tangent = q + (r * 2.0 + s * (3.0 * xi)) * xi;
-            position.dot(&tangent)
-        };
+        let curve = self.curve(from, y);
+        let slope_at = |xi: f64| curve.position(xi).dot(&curve.tangent(xi));
         let mut best: Option<(f64, f64)> = None;
         let mut last = slope_at(at(0));
         for k in 1..=SAMPLES {
@@ -115,9 +150,8 @@ impl Facet<'_> {
             if last <= 0.0 && slope > 0.0 {
                 let low = at(k - 1);
                 let high = at(k);
-                let slope = |xi: f64| self.distance_slope(y, from, xi);
-                let xi = bisected(low, high, 0.5 * (low + high), slope);
-                let distance = self.seen_from(from, y, xi).position.norm();
+                let xi = bisected(low, high, 0.5 * (low + high), |xi| curve.distance_slope(xi));
+                let distance = curve.position(xi).norm();
                 if best.is_none_or(|(d, _)| distance < d) {
                     best = Some((distance, xi));
                 }

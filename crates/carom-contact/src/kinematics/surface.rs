@@ -39,6 +39,20 @@ pub(crate) struct Kink {
     pub(crate) sine: f64,
 }
 
+impl Kink {
+    /// The kink between two tangents.
+    pub(crate) fn between([here, there]: [Vector<2>; 2]) -> Self {
+        let size = here.norm() * there.norm();
+        let sine = (here[0] * there[1] - here[1] * there[0]) / size;
+        Self { cosine: here.dot(&there) / size, sine }
+    }
+
+    /// Whether the joint is smooth, but for this kink.
+    pub(crate) fn is_small(&self) -> bool {
+        self.cosine > KINK.cosine
+    }
+}
+
 impl Surface {
     /// A side from its facets, given as lists of global nodes (start, end, interior), traversed
     /// with the body on their left; `orientations` only matters for points
@@ -188,7 +202,7 @@ impl Surface {
 
     /// Whether the joint of a facet and the one that follows it is smooth, but for a small kink.
     pub(crate) fn is_blunt(&self, facet: usize, next: usize, y: Places) -> bool {
-        self.kink(facet, next, y).cosine > KINK.cosine
+        self.kink(facet, next, y).is_small()
     }
 
     /// The facets next to a facet at a convex corner.
@@ -208,8 +222,8 @@ impl Surface {
     /// symmetry the mirror image of the facet follows, and behind a convex corner with a facet that
     /// a tie has closed the other body, taken for the mirror image.
     pub(crate) fn tangents_at_joint(&self, facet: usize, next: usize, y: Places) -> [Vector<2>; 2] {
-        let here = self.facet(facet).at(y, 1.0).tangent;
-        let there = self.facet(next).at(y, -1.0).tangent;
+        let here = self.facet(facet).tangent(y, 1.0);
+        let there = self.facet(next).tangent(y, -1.0);
         let mirrored = |tangent, along: Vector<2>| reflected(tangent, along * along.norm().recip());
         let is_convex = || {
             let size = here.norm() * there.norm();
@@ -230,10 +244,7 @@ impl Surface {
 
     /// The kink between a facet and the one that follows it.
     pub(crate) fn kink(&self, facet: usize, next: usize, y: Places) -> Kink {
-        let [here, there] = self.tangents_at_joint(facet, next, y);
-        let size = here.norm() * there.norm();
-        let sine = (here[0] * there[1] - here[1] * there[0]) / size;
-        Kink { cosine: here.dot(&there) / size, sine }
+        Kink::between(self.tangents_at_joint(facet, next, y))
     }
 
     /// Distance between a facet's ends.

@@ -1,5 +1,7 @@
 //! Rows that are linearly independent on the free dofs.
 
+use std::collections::BTreeMap;
+
 use carom_algebra::{Independent, Plane, SparseRow};
 use carom_contact::{Along, Pairing, Row, Rows};
 
@@ -57,6 +59,23 @@ pub(crate) fn is_dependent<'a>(model: &Model, rows: impl Iterator<Item = Row<'a>
     independent_above(model, counted).len() < count
 }
 
+/// Contact and pair of closed gaps that depend on those of other contacts: which of them presses,
+/// and rubs by its law, is arbitrary.
+pub(crate) fn dependent_on_others<'a>(
+    model: &Model,
+    gaps: impl Iterator<Item = ((usize, usize), Row<'a>)>,
+) -> Vec<(usize, usize)> {
+    let mut all = Independent::default();
+    let mut of_contacts: BTreeMap<usize, Independent> = BTreeMap::new();
+    let is_arbitrary = |&(place, row): &((usize, usize), Row)| {
+        let row = on_free_dofs(model, row);
+        let is_new_there = of_contacts.entry(place.0).or_default().accept(row.clone(), NEARLY);
+        let is_new = all.accept(row, NEARLY);
+        is_new_there && !is_new
+    };
+    gaps.filter(is_arbitrary).map(|(place, _)| place).collect()
+}
+
 /// Whether some node presses with several pairs, as in a corner: only there slips in the plane can
 /// depend on each other.
 pub(crate) fn share_nodes(model: &Model, pairings: &[Pairing], places: &[(usize, usize)]) -> bool {
@@ -105,9 +124,10 @@ pub(crate) fn accept_stick(
     }
 }
 
-/// Entries of a row on the free dofs, an entry each.
+/// Entries of a row on the free dofs, an entry each; those of mortar contact extend over nodes on
+/// which they do not act.
 pub(crate) fn on_free_dofs(model: &Model, row: Row) -> SparseRow {
-    let is_free = |(dof, _): &(usize, f64)| !model.fixed[*dof];
+    let is_free = |(dof, slope): &(usize, f64)| *slope != 0.0 && !model.fixed[*dof];
     if model.points.is_empty() {
         return row.entries().filter(is_free).collect();
     }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use carom_algebra::Threads;
-use carom_algebra::sums::{dot, max_or_nan};
+use carom_algebra::sums::dot;
 use carom_solid::{Ask, Configuration, Inverted, Past, Response};
 
 use super::body_instance::BodyInstance;
@@ -352,11 +352,7 @@ impl Model {
 
     /// Largest equivalent plastic strain over the quadrature points of a body.
     pub fn plastic_strain(&self, body: usize, memory: &[f64]) -> f64 {
-        let past = past_of(&self.parts, body, memory);
-        let body = &self.parts[body].body;
-        let strains = (0..body.mesh().cell_count()).map(|cell| body.cell_plastic_strain(cell, &past));
-        // A law of the user's own does not tell it.
-        strains.fold(0.0, max_or_nan)
+        self.parts[body].body.plastic_strain(&past_of(&self.parts, body, memory))
     }
 
     /// Smallest J over all quadrature points, which remember `memory`.

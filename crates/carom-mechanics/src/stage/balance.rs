@@ -11,6 +11,10 @@
 //! is enforced at s + 1 only. f_ext is gravity and the loads, evaluated at the same time (and, for
 //! pressures, positions) as f_int. The residual of a constrained dof is its reaction force.
 //!
+//! What the start of a run lacks of balance, as where a support lets go of a strained body or a
+//! load acts at once, does not become smaller with a load step. Where no step reaches balance from
+//! there, it fades in proportion to the time until the end of the first step of the grid.
+//!
 //! At prescribed dofs the acceleration ü is known, and M ü acts on the neighbours like an external
 //! force, averaged with α_f. The scheme's own a is another quantity, with a delay of (α_f − α_m)Δt
 //! (Erlicher, Bonaventura, Bursi 2002): averaging ü with α_m instead costs an order.
@@ -67,6 +71,18 @@ pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mu
                 - external * (model.gravity[i] + state.f_external[i])
         };
     }
+}
+
+/// What the forces at the start of a load step lack of balance, times a share; nothing on
+/// prescribed dofs, where it is their reaction.
+pub(crate) fn imbalance_into(model: &Model, state: &State, share: f64, known: &mut Vec<f64>) {
+    known.clear();
+    known.extend((0..model.dofs()).map(|i| {
+        let loads = model.gravity[i] + state.f_external[i];
+        -share * (state.f_internal[i] + state.f_contact[i] - loads)
+    }));
+    model.points.gather(known);
+    known.iter_mut().zip(&model.fixed).filter(|(_, fixed)| **fixed).for_each(|(known, _)| *known = 0.0);
 }
 
 /// The terms of r at a dof: of inertia, of internal, contact and external forces, and those known.

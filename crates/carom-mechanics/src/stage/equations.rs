@@ -14,7 +14,7 @@ use carom_time::{Internal, Stage};
 use crate::contact::augmented;
 use crate::model::{LoadsAt, Model, Prescribed};
 use crate::rejected::Rejected;
-use crate::stage::balance::{known_into, mean_acceleration, residual_into};
+use crate::stage::balance::{imbalance_into, known_into, mean_acceleration, residual_into};
 use crate::stage::evaluation::{Evaluation, Iterate, Spare};
 use crate::stage::renewal::Point as FactorPoint;
 use crate::state::State;
@@ -80,6 +80,15 @@ impl<'a> Equations<'a> {
         let factors = [equations.mass_factor(), equations.stiffness_factor()];
         equations.augmented = augmented::springs(model, &equations.stage, factors);
         Ok(equations)
+    }
+
+    /// Makes a load step that ends before `end` leave its share of what its start lacks of balance.
+    pub(crate) fn fade_until(&mut self, end: f64) {
+        let left = end - self.time;
+        if left > 0.0 {
+            let share = left / (end - self.state.time);
+            imbalance_into(self.model, self.state, share, &mut self.known);
+        }
     }
 
     /// Whether internal forces are a discrete gradient over the step.

@@ -63,6 +63,10 @@ struct Point {
 }
 
 impl Stepper for Implicit {
+    fn is_static(&self) -> bool {
+        self.kernel.is_static()
+    }
+
     fn linear(&self) -> Linear {
         self.settings.linear
     }
@@ -98,6 +102,9 @@ impl Stepper for Implicit {
             }
             let time = if stage.end == 1.0 { to } else { state.time + stage.end * dt };
             let mut equations = Equations::new(model, state, stage, time)?;
+            if let Some(end) = work.fade_until {
+                equations.fade_until(end);
+            }
             let before = finished.last().map_or(&state.y, |point| &point.y);
             guess.predict(&next.v, &next.a, (equations.stage.end - end) * dt);
             if goes_on(&equations)

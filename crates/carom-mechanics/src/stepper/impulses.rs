@@ -15,7 +15,7 @@ use carom_time::ImpulseShares;
 use super::rubbing::{combined, friction_state, kind};
 use super::watch::{active, measure_into, moves, overconstrained};
 use crate::contact::constraints::Constraints;
-use crate::contact::independent::{HELD, is_dependent, share_nodes};
+use crate::contact::independent::{HELD, dependent_on_others, is_dependent, share_nodes};
 use crate::contact::loose::loose;
 use crate::model::Model;
 use crate::rejected::Rejected;
@@ -207,6 +207,16 @@ impl Impulses {
         values.clone_from(&self.values);
         let matrix = &mut Couplings::dense(count, matrix);
         Cone { matrix, right: &mut right, kinds: &self.kinds, is_dependent: self.dependent }.solve(values)
+    }
+
+    /// Contact and pair of gaps whose friction may as well be that of another contact.
+    pub(super) fn with_arbitrary_friction(&self, model: &Model) -> Vec<(usize, usize)> {
+        if !self.dependent || !model.has_friction() {
+            return Vec::new();
+        }
+        let rows = self.rows.list.iter().zip(self.rows.rows.iter());
+        let gaps = rows.filter(|(constraint, _)| constraint.slip.is_none());
+        dependent_on_others(model, gaps.map(|(constraint, row)| (constraint.place, row)))
     }
 
     /// x += factor M⁻¹GᵀP.

@@ -12,7 +12,7 @@ use super::scratch::Scratch;
 use super::tied_mass::TiedMass;
 use super::watch::{active, carry_into, measure_into, moves, overconstrained};
 use crate::contact::depths::{begin, beginning, ease, gap_at};
-use crate::contact::independent::{HELD, is_dependent, share_nodes};
+use crate::contact::independent::{HELD, dependent_on_others, is_dependent, share_nodes};
 use crate::contact::loose::loose;
 use crate::contact::update::search;
 use crate::model::Model;
@@ -97,6 +97,12 @@ impl Increments<'_> {
             self.choose_rows(&laws, scratch)?;
             self.find_impulses(&mut dependence, scratch)?;
             self.apply(velocity, scratch);
+        }
+        if dependence.is_dependent && model.has_friction() {
+            let Scratch { places, acting, pairings, .. } = &*scratch;
+            let gaps = places.iter().copied().zip(acting.iter());
+            let node = |(k, p): (usize, usize)| (k, model.contacts[k].node(&pairings[k].pairs[p]));
+            report.dependent.extend(dependent_on_others(model, gaps).into_iter().map(node));
         }
         self.note_slips(velocity, scratch);
         for (contact, pairing) in model.contacts.iter().zip(&mut scratch.pairings) {

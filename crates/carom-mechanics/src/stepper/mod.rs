@@ -122,6 +122,11 @@ pub trait Stepper: Send + Sync {
         false
     }
 
+    /// Whether its steps are load steps, without inertia.
+    fn is_static(&self) -> bool {
+        false
+    }
+
     /// What solves its linear systems.
     fn linear(&self) -> Linear {
         Linear::Direct

@@ -243,10 +243,9 @@ impl Bodies<'_> {
         )
     }
 
-    /// Whether a support moves a node.
-    pub(super) fn moves(&self, node: usize) -> bool {
-        let dimension = self.case.dimension;
-        self.moved[dimension * node..dimension * (node + 1)].contains(&true)
+    /// Whether a support moves a node in the plane along a direction.
+    pub(super) fn moves(&self, node: usize, along: [f64; 2]) -> bool {
+        along.iter().enumerate().any(|(axis, component)| *component != 0.0 && self.moved[2 * node + axis])
     }
 
     fn is_fixed(&self) -> impl Fn(usize, usize) -> bool {

@@ -8,8 +8,8 @@ use carom_case::{
     ObstacleMotion, Persistency, Problem,
 };
 use carom_contact::{
-    Augmented, ConservingPenalty, ConservingUnilateral, Direction, Interface, Kinematics, NodeToObstacle,
-    Obstacle, Penalty, Unilateral,
+    Augmented, ConservingPenalty, ConservingUnilateral, Direction, InPlane, Interface, Kinematics,
+    NodeToObstacle, Obstacle, Penalty, Unilateral,
 };
 use carom_mechanics::model::{AllowedDepths, Augmentation, BodyInstance, Contact, Friction, OfRows, Springs};
 
@@ -105,8 +105,10 @@ fn contact(k: usize, bodies: &Bodies, obstacles: &[Moving], massless: &[bool]) -
         }
         let count = kinematics.secondary().len();
         for node in 0..count {
-            let in_plane = kinematics.in_plane_of_symmetry(node);
-            if !in_plane.is_empty() && !in_plane.iter().any(|&node| bodies.moves(node)) {
+            let stays = |InPlane { nodes, normal }: &InPlane| {
+                nodes.iter().all(|&node| !bodies.moves(node, *normal)) && !spec.motion.may_cross(*normal)
+            };
+            if kinematics.in_plane_of_symmetry(node).as_ref().is_some_and(stays) {
                 friction.limits.resize(count, f64::INFINITY);
                 friction.limits[node] = 0.0;
             }

@@ -63,10 +63,14 @@ pub(super) fn bar_modulus(case: &Case, _: &Model) -> Vec<Found> {
         };
         // Λ computed from a ratio of zero is zero.
         let differ = |[confined, young]: &[f64; 2]| (confined - young).abs() > 1e-9 * young.abs();
-        if let Some([confined, young]) = case.materials_of(body).into_iter().map(moduli).find(differ) {
+        let materials = case.materials_of(body);
+        if let Some([confined, young]) = materials.iter().copied().map(moduli).find(differ) {
             let [confined, young, ratio] = [confined, young, confined / young].map(short);
             let what = format!("its modulus is Λ + 2μ = {confined}, {ratio} times Young's modulus {young}");
             found.push(Found::of_body(&body.name, what));
+        } else if materials.iter().any(|material| material.plastic.is_some()) {
+            let what = "where it yields its sides are held: plastic flow would narrow it";
+            found.push(Found::of_body(&body.name, what.into()));
         }
     }
     found

@@ -130,7 +130,8 @@ pub const WARNINGS: [Entry; 34] = [
     Entry {
         id: "bar-modulus",
         why: "dimension 1 has no lateral strain: bodies are columns that cannot widen, not free bars",
-        advice: "poisson = 0 (or lambda = 0, mu = E/2) for a bar whose sides are free",
+        advice: "poisson = 0 (or lambda = 0, mu = E/2) for a bar whose sides are free, and plane = \"stress\" in \
+            dimension 2 if it yields",
         rule: Rule::Model(elements::bar_modulus),
     },
     Entry {

@@ -201,3 +201,85 @@ fn a_start_inside_an_obstacle_is_refused() {
     assert!(format!("{problems:?}").contains("overlap at the start"), "{problems:?}");
     simulation(&flight("0.05", "", &initial), &[""; 0]);
 }
+
+/// A block that was pulled until it yielded, and on which support lets go, springs back as one
+/// whose grip eases off by a traction: elastically.
+#[test]
+fn a_yielded_block_springs_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let block = |grip: &str, end: f64, initial: &str| {
+        let block = r#"
+dimension = 2
+plane = "strain"
+[[material]]
+name = "m"
+law = "hencky"
+density = 1.0
+young = 200.0
+poisson = 0.3
+plastic = { yield = 2.0, hardening = 10.0 }
+[[body]]
+name = "b"
+material = "m"
+element = "T6"
+mesh = { shape = "rectangle", min = [0.0, 0.0], max = [1.0, 1.0], cells = [2, 2] }
+[[support]]
+on = ["b.left"]
+fix = ["x"]
+[[support]]
+on = ["b.bottom"]
+fix = ["y"]
+"#;
+        format!("{block}{grip}{}{initial}", time(end, 0.5, r#"{ kind = "static" }"#))
+    };
+    let pull = block("[[support]]\non = [\"b.right\"]\nmove = { x = \"0.05*t\" }\n", 1.0, "");
+    let initial = initial_state(&pull, &folder.path().join("pulled"));
+    let pulled = finish(simulation(&pull, &[""; 0]));
+    let right: Vec<usize> = (0..pulled.model().dofs())
+        .step_by(2)
+        .filter(|&dof| (pulled.model().reference[dof] - 1.0).abs() < 1e-12)
+        .collect();
+    let grip: f64 = right.iter().map(|&dof| pulled.state().f_internal[dof]).sum();
+    let let_go = finish(simulation(&block("", 1.0, &initial), &[""; 0]));
+    let eased = format!("[[load]]\non = [\"b.right\"]\ntraction = [\"{grip:?}*(1-t)\", \"0\"]\n");
+    let eased = finish(simulation(&block(&eased, 1.0, &initial), &[""; 0]));
+    for (one, other) in let_go.state().y.iter().zip(&eased.state().y) {
+        assert!((one - other).abs() < 1e-9, "{one} {other}");
+    }
+    let [before, now] = [&pulled, &let_go].map(|run| run.state().materials.past(0.0).memory);
+    assert!(before.iter().zip(now).all(|(before, now)| (before - now).abs() < 1e-12), "{now:?}");
+    let spring = right.iter().map(|&dof| pulled.state().y[dof] - let_go.state().y[dof]).fold(0.0, f64::max);
+    assert!(spring > 0.01, "{spring}");
+}
+
+/// Mortar contact with an obstacle that stands where it has moved to goes on, as deep as it was.
+#[test]
+fn mortar_contact_goes_on_where_its_obstacle_has_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let circle = |at: &str, motion: &str, end: f64, initial: &str| {
+        let obstacle = format!("primary = {{ circle = {{ center = {at}, radius = 1.0 }}{motion} }}");
+        let contact = format!(
+            "[[contact]]\nname = \"c\"\nsecondary = \"block.bottom\"\nmethod = \"mortar\"\n{obstacle}"
+        );
+        block(&contact, &time(end, 0.1, r#"{ kind = "static" }"#), initial)
+    };
+    let first = circle("[0.0, -1.0]", ", motion = { y = \"0.05*t\" }", 1.0, "");
+    let initial = initial_state(&first, &folder.path().join("first"));
+    let pressed = finish(simulation(&first, &[""; 0]));
+    let goes_on = finish(simulation(&circle("[0.0, -0.95]", "", 0.2, &initial), &[""; 0]));
+    let [before, now] = [&pressed, &goes_on].map(|run| run.state().contact_forces[0][1]);
+    assert!((now / before - 1.0).abs() < 1e-6, "{before} {now}");
+}
+
+/// A state in other units is refused.
+#[test]
+fn a_state_in_other_units_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let units = |time: &str| format!("units = {{ length = \"mm\", time = \"{time}\", mass = \"g\" }}\n");
+    let first = format!("{}{}", units("s"), flight("-3.0", "", ""));
+    let initial = initial_state(&first, &folder.path().join("first"));
+    let other = case(&format!("{}{}", units("ms"), flight("-3.0", "", &initial)), &[""; 0]);
+    let Err(problems) = Setup::new(&other).start() else { panic!("milliseconds are not seconds") };
+    assert!(format!("{problems:?}").contains("it has mm, s, g, the case mm, ms, g"), "{problems:?}");
+    simulation(&format!("{}{}", units("s"), flight("-3.0", "", &initial)), &[""; 0]);
+}

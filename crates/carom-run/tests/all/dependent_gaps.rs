@@ -173,3 +173,27 @@ fn a_support_that_moves_along_the_surface_drags_its_node() {
         }
     }
 }
+
+/// Impulses at a place that two contacts share are given to one of them: which one's friction acts
+/// there is arbitrary, and is told.
+#[test]
+fn impulses_at_a_place_of_two_contacts_are_told_of() {
+    for scheme in [r#"{ kind = "moreau-jean", theta = 0.5 }"#, r#"{ kind = "central-difference" }"#] {
+        let time = format!("time={{ end = 0.05, step = 1e-3, scheme = {scheme} }}");
+        let sets = [
+            "support=[]",
+            "body.a.mass=lumped",
+            "body.b.mass=lumped",
+            "body.a.gravity=[\"0\", \"-5\"]",
+            "body.b.gravity=[\"0\", \"-5\"]",
+            "body.a.velocity=[1.0, 0.0]",
+            "body.b.velocity=[1.0, 0.0]",
+            "contact.c2.mu=0.5",
+            time.as_str(),
+        ];
+        let told = |sets: &[&str]| recorded(TIED, sets).iter().any(|id| id == "dependent-gaps");
+        assert!(told(&sets), "{scheme}");
+        let one = "contact=[{ name = \"c1\", secondary = \"a.bottom\", primary = { plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }, mu = 0.21 }]";
+        assert!(!told(&[&sets[..7], &[one, time.as_str()]].concat()), "{scheme}");
+    }
+}

@@ -164,3 +164,36 @@ fn a_quarter_in_space_rubs_like_the_whole() {
     let corner = quarter.state().pairs[0].iter().find(|pair| pair.node == 0).unwrap();
     assert!(corner.active && corner.tangential.traction == [0.0; 2], "{corner:?}");
 }
+
+/// And it has none where an obstacle moves along the plane.
+#[test]
+fn half_a_block_below_a_moving_circle_is_half_of_the_whole() {
+    let case = r#"
+dimension = 2
+plane = "strain"
+material = [{ name = "m", law = "hencky", density = 1.0, young = 400.0, poisson = 0.3 }]
+support = [{ on = ["block.bottom"], fix = ["x", "y"] }, { on = ["block.left"], fix = ["x"] }]
+time = { end = 1.0, step = 0.1, scheme = { kind = "static" } }
+[[body]]
+name = "block"
+material = "m"
+element = "Q4"
+mesh = { shape = "rectangle", min = [0.0, -1.0], max = [2.0, 0.0], cells = [8, 4] }
+[[contact]]
+name = "c"
+secondary = "block.top"
+primary = { circle = { center = [0.0, 1.0], radius = 1.0 }, motion = { y = "-0.2*t" } }
+method = "mortar"
+mu = 0.3
+"#;
+    let half = finish(simulation(case, &[""; 0]));
+    let whole = finish(simulation(
+        case,
+        &[
+            "body.block.mesh={ shape = \"rectangle\", min = [-2.0, -1.0], max = [2.0, 0.0], cells = [16, 4] }",
+            "support=[{ on = [\"block.bottom\"], fix = [\"x\", \"y\"] }]",
+        ],
+    ));
+    let force = [&half, &whole].map(|run| run.state().contact_forces[0][1]);
+    assert!((2.0 * force[0] / force[1] - 1.0).abs() < 1e-6, "{force:?}");
+}

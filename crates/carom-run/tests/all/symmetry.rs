@@ -174,3 +174,47 @@ fn springs_over_joints_count_once() {
     assert!(whole > 1.0 && (whole / (4.0 * quarter) - 1.0).abs() < 1e-8, "{whole} {quarter}");
     assert!(fx.abs() < 1e-9 && fy.abs() < 1e-9, "{fx} {fy}");
 }
+
+/// Two blocks with meshes that match strike flat: whichever nodes slide over corners of facets, the
+/// blocks widen alike in both directions, with impulses, too.
+#[test]
+fn blocks_with_matching_meshes_widen_alike_by_impulses() {
+    let case = r#"
+dimension = 3
+material = [
+  { name = "soft", law = "neo-hookean", density = 1.0, young = 400.0, poisson = 0.3 },
+  { name = "stiff", law = "neo-hookean", density = 1.0, young = 1000.0, poisson = 0.3 },
+]
+support = [{ on = ["low.bottom"], fix = ["x", "y", "z"] }]
+contact = [{ name = "c", secondary = "up.bottom", primary = "low.top" }]
+time = { end = 0.06, step = 5e-3, scheme = { kind = "moreau-jean", theta = 0.5 } }
+[[body]]
+name = "low"
+material = "soft"
+element = "Hex8"
+mesh = { shape = "box", min = [-1.0, -1.0, -0.5], max = [1.0, 1.0, 0.0], cells = [4, 4, 1] }
+[[body]]
+name = "up"
+material = "stiff"
+element = "Hex8"
+mesh = { shape = "box", min = [-0.5, -0.5, 0.0], max = [0.5, 0.5, 0.5], cells = [2, 2, 1] }
+velocity = [0.0, 0.0, -1.0]
+"#;
+    let run = finish(simulation(case, &[""; 0]));
+    let reference = &run.model().reference;
+    let moved = |dof: usize| run.state().y[dof] - reference[dof];
+    let mut largest = 0.0;
+    for node in run.model().parts[1].nodes() {
+        let [x, y] = [moved(3 * node), moved(3 * node + 1)];
+        let along = reference[3 * node];
+        let across = reference[3 * node + 1];
+        let image = run.model().parts[1]
+            .nodes()
+            .find(|&other| [across, along, reference[3 * node + 2]] == reference[3 * other..3 * other + 3]);
+        let image = image.unwrap();
+        largest = f64::max(largest, x.abs());
+        let apart = (x - moved(3 * image + 1)).abs().max((y - moved(3 * image)).abs());
+        assert!(apart < 1e-9, "node {node}: {apart:e}");
+    }
+    assert!(largest > 1e-3, "{largest}");
+}

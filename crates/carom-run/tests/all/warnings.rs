@@ -490,6 +490,13 @@ fn bars_that_cannot_widen() {
     assert!((modulus - 1346.15).abs() < 0.01, "{modulus}");
     let (given, modulus) = pulled("material.steel.poisson=0.0");
     assert!(given.is_empty() && (modulus - 1000.0).abs() < 1e-6, "{given:?} {modulus}");
+    let yielding =
+        ["material.steel.law=\"hencky\"", "material.steel.poisson=0.0", "material.steel.plastic.yield=1e6"];
+    let given = found(STRETCHED, &yielding);
+    assert!(
+        given.iter().any(|(id, what)| *id == "bar-modulus" && what.contains("plastic flow")),
+        "{given:?}"
+    );
 }
 
 /// The warnings of linear elasticity of a free square of a law, from given positions on.

@@ -4,6 +4,7 @@
 //! what it computes, and compiling every law into the loops of every shape took two thirds of the
 //! time for compiling this crate.
 
+use carom_algebra::sums::max_or_nan;
 use carom_algebra::{Mat, Vector, wide};
 
 use super::hyperelastic::{Along, AtFour, Moduli};
@@ -73,8 +74,8 @@ pub(crate) trait Pointwise<const D: usize>: Send + Sync {
     /// [`Material::MEMORY`].
     fn memory(&self) -> usize;
 
-    /// [`Material::plastic_strain`].
-    fn plastic_strain_of(&self, memory: &[f64]) -> f64;
+    /// Largest [`Material::plastic_strain`] of points whose memories follow one another.
+    fn largest_plastic_strain(&self, memory: &[f64]) -> f64;
 
     /// Kinematics and stress.
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive>;
@@ -155,8 +156,9 @@ impl<const D: usize, L: Material<D>> Pointwise<D> for L {
         L::MEMORY
     }
 
-    fn plastic_strain_of(&self, memory: &[f64]) -> f64 {
-        self.plastic_strain(memory)
+    fn largest_plastic_strain(&self, memory: &[f64]) -> f64 {
+        let points = memory.chunks_exact(L::MEMORY.max(1));
+        points.map(|point| self.plastic_strain(point)).fold(0.0, max_or_nan)
     }
 
     fn state_at(&self, h: &Mat<D>, past: &Past) -> Result<PointState, NotPositive> {

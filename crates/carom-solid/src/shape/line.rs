@@ -69,6 +69,38 @@ pub fn line_shape(nodes: usize, xi: f64) -> LineShape {
     }
 }
 
+/// The curve through 1 (a point) to 4 nodes, Σ φᵃ xᵃ, by powers of ξ from ξ⁰ on.
+///
+/// # Panics
+/// For any other number of nodes.
+///
+/// ```
+/// use carom_algebra::Vector;
+/// let arc = carom_solid::line_powers(&[Vector([0.0]), Vector([2.0]), Vector([3.0])]);
+/// assert_eq!(arc.map(|power| power[0]), [3.0, 1.0, -2.0, 0.0]);
+/// ```
+#[inline]
+pub fn line_powers<const D: usize>(nodes: &[Vector<D>]) -> [Vector<D>; 4] {
+    match *nodes {
+        [x] => [x, Vector::ZERO, Vector::ZERO, Vector::ZERO],
+        [start, end] => [(start + end) * 0.5, (end - start) * 0.5, Vector::ZERO, Vector::ZERO],
+        [start, end, middle] => [middle, (end - start) * 0.5, (start + end) * 0.5 - middle, Vector::ZERO],
+        [start, end, early, late] => {
+            let outer = start + end;
+            let inner = early + late;
+            let across = end - start;
+            let within = late - early;
+            [
+                (inner * 9.0 - outer) * 0.0625,
+                (within * 27.0 - across) * 0.0625,
+                (outer - inner) * 0.5625,
+                (across - within * 3.0) * 0.5625,
+            ]
+        }
+        _ => panic!("a line has 1 to 4 nodes, not {}", nodes.len()),
+    }
+}
+
 /// The interval −1..1.
 pub struct Interval;
 

@@ -12,7 +12,7 @@ mod triangle;
 use carom_algebra::Vector;
 
 pub use hull::Hull;
-pub use line::{Line2, Line3, Line4, LineShape, line_shape};
+pub use line::{Line2, Line3, Line4, LineShape, line_powers, line_shape};
 pub use tensor::{Hex8, Hex27, Quad4, Quad9};
 pub use tetrahedron::{Tet4, Tet10, Tet20};
 pub use triangle::{Tri3, Tri6, Tri10};

@@ -171,11 +171,12 @@ impl<const D: usize, const N: usize, S: Shape<D, N>> Body for Solid<D, N, S> {
         cells.map(|cell| self.cell_min_det_f(cell, y, past)).fold(f64::INFINITY, f64::min)
     }
 
-    fn cell_plastic_strain(&self, cell: usize, past: &Past) -> f64 {
-        let law = &self.medium(cell).law;
-        let points = past.part(cell, self.memory).memory.chunks_exact(law.memory().max(1));
+    fn plastic_strain(&self, past: &Past) -> f64 {
+        let cells = 0..self.mesh.cell_count();
+        let of_cell =
+            |cell| self.medium(cell).law.largest_plastic_strain(past.part(cell, self.memory).memory);
         // A law of the user's own does not tell it.
-        points.map(|memory| law.plastic_strain_of(memory)).fold(0.0, max_or_nan)
+        cells.map(of_cell).fold(0.0, max_or_nan)
     }
 
     fn quadrature_points(&self, cell: usize, y: &[f64], past: &Past) -> Result<Vec<PointState>, Inverted> {

@@ -1,10 +1,10 @@
 //! Shape functions: nodality, completeness, and derivatives by differences.
 
 use carom_algebra::Vector;
-use carom_solid::line_shape;
 use carom_solid::shape::{
     Domain, Hex8, Hex27, Line2, Line3, Line4, Quad4, Quad9, Shape, Tet4, Tet10, Tet20, Tri3, Tri6, Tri10,
 };
+use carom_solid::{line_powers, line_shape};
 
 use super::random::lists;
 
@@ -93,4 +93,20 @@ fn second_derivatives_are_the_slope_of_the_first() {
             }
         }
     });
+}
+
+/// A curve by powers of ξ is that of its shape functions.
+#[test]
+fn a_curve_has_the_powers_of_its_shape_functions() {
+    let nodes = [0.3, -1.7, 2.9, 0.8].map(|x| Vector([x]));
+    for count in 1..=4 {
+        let nodes = &nodes[..count];
+        let powers = line_powers(nodes);
+        for xi in [-1.3, -0.4, 0.0, 0.7, 1.0] {
+            let by_powers: f64 = (0..4).map(|k| powers[k][0] * f64::powi(xi, k as i32)).sum();
+            let values = line_shape(count, xi).values;
+            let by_functions: f64 = nodes.iter().zip(values).map(|(x, value)| x[0] * value).sum();
+            assert!((by_powers - by_functions).abs() < 1e-14, "{count} {xi}: {by_powers} {by_functions}");
+        }
+    }
 }

@@ -26,6 +26,10 @@ impl Kernel for Static {
         1
     }
 
+    fn is_static(&self) -> bool {
+        true
+    }
+
     fn stage_into(&self, _k: usize, _dt: f64, memory: &Memory, stage: &mut Stage) {
         let dofs = memory.states[0].0.len();
         stage.at_the_end(1.0, [0.0, 0.0, 1.0]);

@@ -1,9 +1,12 @@
 //! Quadrature points and gaps of the secondary facets at one configuration.
 
+use carom_algebra::Vector;
+
 use super::cut::Regions;
 use super::joint::Joint;
 use super::multipliers::MOST;
 use super::patch::Patch;
+use crate::places::Places;
 
 /// A secondary facet at one configuration.
 #[derive(Debug, Default)]
@@ -24,11 +27,57 @@ pub(super) struct Faced {
 /// The facets at one configuration, measured when they are first asked for: few are near the other
 /// side.
 #[derive(Debug, Default)]
-pub(super) struct Cache {
+pub(super) struct Configuration {
     /// Positions of the nodes of both sides.
-    pub(super) places: Vec<f64>,
+    places: Vec<Vector<2>>,
     /// Facets of the primary with their regions.
     pub(super) regions: Regions,
     /// The facets of the secondary side.
     pub(super) of_facets: Vec<Faced>,
+}
+
+/// The last two configurations that were asked for, as the start of a step and an iterate.
+#[derive(Debug, Default)]
+pub(super) struct Cache {
+    known: [Configuration; 2],
+    latest: usize,
+}
+
+impl Cache {
+    /// The place of the configuration with the positions `y` of the `nodes` of both sides. If it is
+    /// new, `regions` are those of the primary in it, and none of the `facets` of the secondary
+    /// side is measured.
+    pub(super) fn find(
+        &mut self,
+        (nodes, y): (&[usize], Places),
+        regions: impl FnOnce() -> Regions,
+        facets: usize,
+    ) -> usize {
+        let flat = y.flat().as_chunks::<2>().0;
+        let is_same = |of: &Configuration| {
+            !of.places.is_empty() && nodes.iter().zip(&of.places).all(|(&node, place)| flat[node] == place.0)
+        };
+        if !is_same(&self.known[self.latest]) {
+            self.latest = 1 - self.latest;
+            let other = &mut self.known[self.latest];
+            if !is_same(other) {
+                other.places.clear();
+                other.places.extend(nodes.iter().map(|&node| y.at(node)));
+                other.regions = regions();
+                other.of_facets.clear();
+                other.of_facets.resize_with(facets, Faced::default);
+            }
+        }
+        self.latest
+    }
+
+    /// A configuration by its place.
+    pub(super) fn get(&mut self, place: usize) -> &mut Configuration {
+        &mut self.known[place]
+    }
+
+    /// The regions of two configurations by their places.
+    pub(super) fn regions(&self, places: [usize; 2]) -> [&Regions; 2] {
+        places.map(|place| &self.known[place].regions)
+    }
 }

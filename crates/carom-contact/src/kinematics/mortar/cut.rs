@@ -21,7 +21,7 @@ use crate::constants::SHALLOW;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::folds::{Folds, Turns};
 use crate::kinematics::projection::{Facet, bisected};
-use crate::kinematics::surface::Surface;
+use crate::kinematics::surface::{Kink, Surface};
 use crate::places::Places;
 
 /// Points at which weighted gaps of mortar contact are measured.
@@ -57,31 +57,30 @@ impl Region {
     /// The region of a facet of the primary at positions `y`.
     pub(super) fn of(primary: &Surface, facet: usize, y: Places) -> Self {
         let of = primary.facet(facet);
-        let [first, middle, last] = [-1.0, 0.0, 1.0].map(|xi| of.at(y, xi));
         let unit = |tangent: Vector<2>| tangent * tangent.norm().recip();
-        let in_order = |next: usize, forward: bool| if forward { [facet, next] } else { [next, facet] };
+        // The neighbour that continues the facet, with the tangent there.
         let continuing = |forward: bool| {
             let next = primary.neighbour(facet, forward)?;
-            let [one, other] = in_order(next, forward);
-            let is_known = primary.is_of_side(next) || primary.is_mirror(next);
-            (is_known && primary.is_blunt(one, other, y)).then_some(next)
+            if !primary.is_of_side(next) && !primary.is_mirror(next) {
+                return None;
+            }
+            let [one, other] = if forward { [facet, next] } else { [next, facet] };
+            let tangents = primary.tangents_at_joint(one, other, y);
+            Kink::between(tangents).is_small().then(|| (next, unit(tangents[usize::from(forward)])))
         };
         let beyond = [false, true].map(continuing);
-        let tangent_beyond = |forward: bool| {
-            let next = beyond[usize::from(forward)]?;
-            let [one, other] = in_order(next, forward);
-            Some(unit(primary.tangents_at_joint(one, other, y)[usize::from(forward)]))
-        };
-        let to_start = tangent_beyond(false).unwrap_or(Vector::ZERO) + unit(first.tangent);
-        let to_end = unit(last.tangent) + tangent_beyond(true).unwrap_or(Vector::ZERO);
-        let in_plane = beyond.map(|next| next.is_some_and(|next| primary.is_mirror(next)));
+        let [before_it, after_it] = beyond.map(|next| next.map_or(Vector::ZERO, |(_, tangent)| tangent));
+        let to_start = before_it + unit(of.tangent(y, -1.0));
+        let to_end = unit(of.tangent(y, 1.0)) + after_it;
+        let in_plane = beyond.map(|next| next.is_some_and(|(next, _)| primary.is_mirror(next)));
+        let [first, last] = [0, 1].map(|end| y.at(of.nodes[end]));
         Self {
-            start: [first.position, to_start],
-            end: [last.position, to_end],
+            start: [first, to_start],
+            end: [last, to_end],
             is_free: [0, 1].map(|end| beyond[end].is_none() || in_plane[end]),
             planes: [0, 1].map(|end| in_plane[end].then(|| unit([to_start, to_end][end]))),
-            normal: middle.normal,
-            length: (last.position - first.position).norm(),
+            normal: of.at(y, 0.0).normal,
+            length: (last - first).norm(),
         }
     }
 
@@ -127,10 +126,10 @@ fn part_beyond(facet: Facet, y: Places, line: [Vector<2>; 2], sign: f64) -> Opti
     let [at_start, at_end] = ends_beyond(facet, y, line, sign);
     let root = |rises: f64| {
         let start = -1.0 + 2.0 * at_start / (at_start - at_end);
+        let curve = facet.curve(on, y);
+        let factor = sign * rises;
         bisected(-1.0, 1.0, start, |xi| {
-            let at = facet.seen_from(on, y, xi);
-            let factor = sign * rises;
-            (factor * at.position.dot(&along), factor * at.tangent.dot(&along))
+            (factor * curve.position(xi).dot(&along), factor * curve.tangent(xi).dot(&along))
         })
     };
     match [at_start >= 0.0, at_end >= 0.0] {
@@ -335,11 +334,13 @@ impl Opposites<'_> {
         for part in parts {
             for end in [0, 1] {
                 let xi = part.ends[end];
-                // The secondary side is not traversed in the direction of the primary.
-                let is_start = (own.at(self.y, xi).tangent.dot(&part.region.start[1]) > 0.0) == (end == 0);
-                let is_free = part.region.is_free[usize::from(!is_start)];
                 // Rows do not extend over the nodes of other contacts.
-                if xi.abs() >= 1.0 || !is_free || !self.surface.is_of_side(part.facet) {
+                if xi.abs() >= 1.0 || !self.surface.is_of_side(part.facet) {
+                    continue;
+                }
+                // The secondary side is not traversed in the direction of the primary.
+                let is_start = (own.tangent(self.y, xi).dot(&part.region.start[1]) > 0.0) == (end == 0);
+                if !part.region.is_free[usize::from(!is_start)] {
                     continue;
                 }
                 let beside = |end: usize| {
@@ -371,7 +372,7 @@ impl Opposites<'_> {
         for &[xi, weight] in rule {
             let start = end;
             end += weight;
-            let point = own.at(self.y, xi).position;
+            let point = own.position(self.y, xi);
             let over = regions.clone().filter(|(_, region)| region.contains(point, normal));
             let over = over.map(|(facet, region)| (*facet, region));
             let Some((facet, region)) = self.nearest(own, over, xi) else { continue };
@@ -397,7 +398,7 @@ impl Opposites<'_> {
         let own_length = (self.y.at(own.nodes[1]) - self.y.at(own.nodes[0])).norm();
         let gap = |facet: usize, region: &Region| {
             let Opposed { eta, .. } = self.opposed(own, facet, region, [xi, 0.0])?;
-            let point = own.at(self.y, xi).position;
+            let point = own.position(self.y, xi);
             let gap = self.surface.gap(facet, eta, point, self.y);
             let is_near = gap > -region.length.max(own_length);
             let is_shallow = self.folds.is_none() || gap >= -SHALLOW * region.length;
@@ -412,7 +413,7 @@ impl Opposites<'_> {
     /// A point of a secondary facet over a facet of the primary; none without a unique closest
     /// point.
     fn opposed(&self, own: Facet, facet: usize, region: &Region, [xi, weight]: [f64; 2]) -> Option<Opposed> {
-        let point = own.at(self.y, xi).position;
+        let point = own.position(self.y, xi);
         let opposite = self.surface.facet(facet);
         // Far away, Newton's method may never be still.
         let eta = opposite.closest_from(self.y, point, region.between(point), MORTAR_BEYOND);

@@ -1,4 +1,4 @@
-//! The points of quadrature of all secondary facets at the positions of the last call. Several
+//! The points of quadrature of all secondary facets at the positions of the last calls. Several
 //! pairs share a facet, and a state is measured more than once. A cache: it never changes a result.
 //!
 //! A multiplier of whose area hardly anything faces the primary, as beside the end of a body, would
@@ -10,7 +10,7 @@ use std::sync::PoisonError;
 use carom_algebra::Vector;
 
 use super::border::{self, Border, End};
-use super::cache::{Cache, Faced};
+use super::cache::{Cache, Configuration, Faced};
 use super::cut::{Crossing, Facing, Meeting, Opposed, Regions};
 use super::joint::Joint;
 use super::multipliers::{MOST, Multiplier, Part, bernstein};
@@ -30,19 +30,25 @@ impl Mortar {
     /// have been measured.
     pub(super) fn at<T>(&self, y: Places, parts: &[Part], of: impl FnOnce(&mut [Faced]) -> T) -> T {
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
-        let places = || self.surface.iter().flat_map(|&node| y.coordinates(node)).copied();
-        if cache.places.is_empty() || !cache.places.iter().copied().eq(places()) {
-            cache.regions = self.opposite.regions(self.opposite.facets(), y);
-            cache.of_facets.clear();
-            cache.of_facets.resize_with(self.secondary.facets(), Faced::default);
-            cache.places.clear();
-            cache.places.extend(places());
-        }
-        let Cache { regions, of_facets, .. } = &mut *cache;
+        let known = self.configuration(&mut cache, y);
+        let Configuration { regions, of_facets, .. } = cache.get(known);
         for part in parts {
             self.measure_facet(part.facet, regions, of_facets, y);
         }
         of(of_facets)
+    }
+
+    /// Calls a function with the regions of the primary at two positions.
+    pub(super) fn with_regions<T>(&self, ends: [Places; 2], of: impl FnOnce([&Regions; 2]) -> T) -> T {
+        let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = ends.map(|y| self.configuration(&mut cache, y));
+        of(cache.regions(known))
+    }
+
+    /// Place of the configuration with positions `y` in a cache.
+    fn configuration(&self, cache: &mut Cache, y: Places) -> usize {
+        let regions = || self.opposite.regions(self.opposite.facets(), y);
+        cache.find((&self.surface, y), regions, self.secondary.facets())
     }
 
     /// Measures a facet, and those on which its carriers depend.
@@ -90,7 +96,7 @@ impl Mortar {
         let place = own.at(y, at.xi);
         let gap = self.opposite.gap(&at, place.position, y)?;
         let (weight, turned) = Turned::of(&Own { tangent: place.tangent, normal: place.normal }, &gap);
-        let area = weight * at.weight * own.at(self.reference(), at.xi).measure;
+        let area = weight * at.weight * own.tangent(self.reference(), at.xi).norm();
         let shape = own.shape.at(at.xi);
         Some(Measured { at, gap, area, turned, shape })
     }

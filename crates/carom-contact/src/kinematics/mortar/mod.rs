@@ -31,7 +31,7 @@ use self::patch::Kind;
 pub use self::sides::Mortar;
 use super::obstacle::Tip;
 use super::passed::Passed;
-use super::{Kinematics, NodalPressure};
+use super::{InPlane, Kinematics, NodalPressure};
 use crate::constants::ROUND_OFF;
 use crate::pair::{ContactError, Pair, PairEvent, Pairing};
 use crate::places::Places;
@@ -224,8 +224,8 @@ impl Kinematics for Mortar {
         Some(self.multipliers[multiplier].area)
     }
 
-    fn in_plane_of_symmetry(&self, multiplier: usize) -> Vec<usize> {
-        self.nodes_in_plane_of_symmetry(multiplier)
+    fn in_plane_of_symmetry(&self, multiplier: usize) -> Option<InPlane> {
+        self.ends_in_plane_of_symmetry(multiplier)
     }
 
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {

@@ -9,7 +9,7 @@
 //! The derivatives by the point x = Σ_a N_a(ξ) y_a and the nodes opposite become those by the nodes
 //! of both facets by the chain rule, with the constant weights N_a.
 
-use carom_algebra::Vector;
+use carom_algebra::{Vector, wide};
 use carom_solid::LineShape;
 
 use super::cut::Opposed;
@@ -61,7 +61,7 @@ pub(super) struct Patch {
     kept: [f64; MOST],
     /// Integrals of rows and of their derivatives, of gaps and of slips, once they are asked for.
     rows: [Option<Box<[[Vector<2>; BOTH]; MOST]>>; 2],
-    derivatives: [Option<Vec<f64>>; 2],
+    derivatives: [Option<Vec<[f64; MATRIX]>>; 2],
 }
 
 impl Measured {
@@ -102,15 +102,15 @@ impl Measured {
         self.gap.count()
     }
 
-    /// The places, in a patch, and weights of the nodes on which number `p` of the vectors depends:
-    /// the point, number 0, a node opposite, or, last, the tangent.
-    fn weights(&self, p: usize, own: usize) -> ([f64; NODES], std::ops::Range<usize>) {
+    /// Weights of the nodes of the secondary facet in number `p` of the vectors, if it is the
+    /// point, number 0, or, last, the tangent; others are nodes opposite, from number 1 on.
+    fn weights(&self, p: usize) -> Option<&[f64; NODES]> {
         if p == 0 {
-            (self.shape.values, 0..own)
+            Some(&self.shape.values)
         } else if p == self.gap.count() {
-            (self.shape.first, 0..own)
+            Some(&self.shape.first)
         } else {
-            ([1.0; NODES], own + p - 1..own + p)
+            None
         }
     }
 }
@@ -169,10 +169,12 @@ impl Patch {
                 for number in 0..MOST {
                     if number == 0 || kept[number] != kept[number - 1] {
                         of_nodes = [Vector::ZERO; BOTH];
-                        point.row(kind, kept[number], |p, slope| {
-                            let (weights, places) = point.weights(p, *own);
-                            let weighted = of_nodes[places].iter_mut().zip(weights);
-                            weighted.for_each(|(sum, weight)| *sum += slope * weight);
+                        point.row(kind, kept[number], |p, slope| match point.weights(p) {
+                            Some(weights) => {
+                                let weighted = of_nodes[..*own].iter_mut().zip(weights);
+                                weighted.for_each(|(sum, weight)| *sum += slope * *weight);
+                            }
+                            None => of_nodes[*own + p - 1] += slope,
                         });
                     }
                     let share = values[number] * point.area;
@@ -190,21 +192,27 @@ impl Patch {
     pub(super) fn derivative(&mut self, kind: Kind, number: usize) -> &[f64] {
         let Self { own, points, values, kept, derivatives, .. } = self;
         let integrate = || {
-            let mut sums = vec![0.0; MOST * MATRIX];
-            let mut of_nodes = [0.0; MATRIX];
-            for (point, values) in points.iter().zip(values) {
-                for number in 0..MOST {
-                    if number == 0 || kept[number] != kept[number - 1] {
-                        expand(point, kind, kept[number], *own, &mut of_nodes);
+            wide(
+                #[inline(always)]
+                || {
+                    let mut sums = vec![[0.0; MATRIX]; MOST];
+                    let mut of_nodes = [0.0; MATRIX];
+                    for (point, values) in points.iter().zip(values) {
+                        for number in 0..MOST {
+                            if number == 0 || kept[number] != kept[number - 1] {
+                                expand(point, kind, kept[number], *own, &mut of_nodes);
+                            }
+                            let share = values[number] * point.area;
+                            for (sum, entry) in sums[number].iter_mut().zip(&of_nodes) {
+                                *sum += share * entry;
+                            }
+                        }
                     }
-                    let share = values[number] * point.area;
-                    let added = sums[number * MATRIX..(number + 1) * MATRIX].iter_mut().zip(&of_nodes);
-                    added.for_each(|(sum, entry)| *sum += share * entry);
-                }
-            }
-            sums
+                    sums
+                },
+            )
         };
-        &derivatives[kind as usize].get_or_insert_with(integrate)[number * MATRIX..(number + 1) * MATRIX]
+        &derivatives[kind as usize].get_or_insert_with(integrate)[number]
     }
 }
 
@@ -213,26 +221,33 @@ pub(super) const SIZE: usize = 2 * BOTH;
 const MATRIX: usize = SIZE * SIZE;
 
 /// Overwrites a matrix over the nodes of both facets with the derivative of the row of a point.
+#[inline(always)]
 fn expand(point: &Measured, kind: Kind, kept: f64, own: usize, matrix: &mut [f64; MATRIX]) {
     let mut of_point = [0.0; OF_POINT * OF_POINT];
     let count = point.derivative_into(kind, kept, &mut of_point);
+    let opposite = point.gap.count() - 1;
     let n = 2 * count;
     matrix.fill(0.0);
+    let rows = matrix.as_chunks_mut::<SIZE>().0;
     for (row, entries) in of_point[..n * n].chunks_exact(n).enumerate() {
         // The columns of the vectors become those of the nodes, then this row those of its nodes.
         let mut columns = [0.0; SIZE];
-        for (q, entry) in entries.chunks_exact(2).enumerate() {
-            let (weights, places) = point.weights(q, own);
-            for (place, weight) in places.zip(weights) {
-                columns[2 * place] += weight * entry[0];
-                columns[2 * place + 1] += weight * entry[1];
+        columns[2 * own..2 * (own + opposite)].copy_from_slice(&entries[2..2 * (1 + opposite)]);
+        for (q, entry) in entries.as_chunks::<2>().0.iter().enumerate() {
+            let Some(weights) = point.weights(q) else { continue };
+            for (column, weight) in columns.as_chunks_mut::<2>().0[..own].iter_mut().zip(weights) {
+                column[0] += weight * entry[0];
+                column[1] += weight * entry[1];
             }
         }
-        let (weights, places) = point.weights(row / 2, own);
-        for (place, weight) in places.zip(weights) {
-            let at = (2 * place + row % 2) * SIZE;
-            let sums = matrix[at..at + SIZE].iter_mut().zip(&columns);
-            sums.for_each(|(sum, entry)| *sum += weight * entry);
+        match point.weights(row / 2) {
+            Some(weights) => {
+                for (place, weight) in weights[..own].iter().enumerate() {
+                    let sums = rows[2 * place + row % 2].iter_mut().zip(&columns);
+                    sums.for_each(|(sum, entry)| *sum += weight * entry);
+                }
+            }
+            None => rows[2 * (own + row / 2 - 1) + row % 2] = columns,
         }
     }
 }

@@ -8,6 +8,7 @@ use carom_algebra::Vector;
 use super::opposite::Opposite;
 use super::sides::Mortar;
 use crate::constants::ROUND_OFF;
+use crate::kinematics::InPlane;
 use crate::kinematics::facets::Facets;
 use crate::kinematics::surface::Surface;
 
@@ -21,14 +22,14 @@ struct EndInPlane {
 impl Mortar {
     /// The nodes of both sides in the plane of symmetry in which a multiplier stands for the
     /// pressure; of an obstacle none.
-    pub(super) fn nodes_in_plane_of_symmetry(&self, multiplier: usize) -> Vec<usize> {
+    pub(super) fn ends_in_plane_of_symmetry(&self, multiplier: usize) -> Option<InPlane> {
         let ends = self.multipliers[multiplier].parts.iter().flat_map(|part| {
             let ends = [(0, false), (self.degree, true)].into_iter();
             let at_end = ends.filter(|(polynomial, _)| *polynomial == part.polynomial);
             at_end.filter_map(|(_, forward)| self.end_in_plane(&self.secondary, part.facet, forward))
         });
         let ends = ends.filter(|end| end.node == self.multipliers[multiplier].node);
-        ends.into_iter().find_map(|end| self.with_opposite(&end)).unwrap_or_default()
+        ends.into_iter().find_map(|end| self.with_opposite(&end))
     }
 
     /// The end of a facet of a side, if it lies in a plane of symmetry in the reference
@@ -42,7 +43,8 @@ impl Mortar {
 
     /// The node of an end with that of the opposite side in the same plane, if that is symmetric
     /// about it, too.
-    fn with_opposite(&self, end: &EndInPlane) -> Option<Vec<usize>> {
+    fn with_opposite(&self, end: &EndInPlane) -> Option<InPlane> {
+        let in_plane = |nodes| InPlane { nodes, normal: end.normal.0 };
         match &self.opposite {
             Opposite::Side(primary) => {
                 let side = &primary.surface;
@@ -54,15 +56,13 @@ impl Mortar {
                     let is_parallel = 1.0 - other.normal.dot(&end.normal).abs() <= ROUND_OFF;
                     is_parallel && apart.dot(&end.normal).abs() <= ROUND_OFF * size
                 })?;
-                Some(vec![end.node, other.node])
+                Some(in_plane(vec![end.node, other.node]))
             }
             Opposite::Obstacle(obstacle) => {
                 let [x, y] = end.place.0;
                 let [along, across, _] = obstacle.gap_of_point([x, y, 0.0], &self.reference)?.direction();
                 let cosine = along * end.normal.0[0] + across * end.normal.0[1];
-                // An obstacle that is carried may move across the plane.
-                let is_symmetric = obstacle.carriers().is_empty() && cosine.abs() <= ROUND_OFF;
-                is_symmetric.then(|| vec![end.node])
+                (cosine.abs() <= ROUND_OFF).then(|| in_plane(vec![end.node]))
             }
         }
     }

@@ -118,11 +118,12 @@ impl Mortar {
             let own = self.secondary.facet(part.facet).nodes;
             let (places, count) = stencil.places(own, self.opposite.nodes(patch.facet));
             let of_patch = patch.derivative(kind, part.polynomial);
-            for (row, entries) in of_patch.chunks_exact(SIZE).take(2 * count).enumerate() {
+            for (row, entries) in of_patch.as_chunks::<SIZE>().0[..2 * count].iter().enumerate() {
                 let sums = &mut matrix[(2 * places[row / 2] + row % 2) * size..][..size];
-                for (&place, entry) in places[..count].iter().zip(entries.chunks_exact(2)) {
-                    sums[2 * place] += share * entry[0];
-                    sums[2 * place + 1] += share * entry[1];
+                let sums = sums.as_chunks_mut::<2>().0;
+                for (&place, entry) in places[..count].iter().zip(entries.as_chunks::<2>().0) {
+                    sums[place][0] += share * entry[0];
+                    sums[place][1] += share * entry[1];
                 }
             }
         });

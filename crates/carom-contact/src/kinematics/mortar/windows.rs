@@ -136,26 +136,27 @@ impl Mortar {
         if own.is_empty() {
             return faced;
         }
-        let regions = ends.map(|y| self.opposite.regions(order, y));
-        for (facet, bounds) in own {
-            let own = self.secondary.facet(facet);
-            let normals = ends.map(|y| own.at(y, 0.0).normal);
-            let mut window: Option<Window> = None;
-            for place in 0..order.len() {
-                let is_faced = |k: usize| {
-                    let (other, region) = &regions[k].of_facets[place];
-                    folds.as_ref().is_none_or(|folds| meet(folds, &regions[k].turns, [facet, *other]))
-                        && region.may_have_part_of(own, normals[k], ends[k])
-                };
-                if is_faced(0) || is_faced(1) {
-                    window.get_or_insert(Window { first: place, last: place }).last = place;
+        self.with_regions(ends, |regions| {
+            for (facet, bounds) in own {
+                let own = self.secondary.facet(facet);
+                let normals = ends.map(|y| own.at(y, 0.0).normal);
+                let mut window: Option<Window> = None;
+                for place in 0..order.len() {
+                    let is_faced = |k: usize| {
+                        let (other, region) = &regions[k].of_facets[place];
+                        folds.as_ref().is_none_or(|folds| meet(folds, &regions[k].turns, [facet, *other]))
+                            && region.may_have_part_of(own, normals[k], ends[k])
+                    };
+                    if is_faced(0) || is_faced(1) {
+                        window.get_or_insert(Window { first: place, last: place }).last = place;
+                    }
+                }
+                let Some(Window { first, last }) = window else { continue };
+                if boxes[first..=last].iter().any(|other| other.meets(&bounds)) {
+                    faced[facet] = Some(Window { first, last });
                 }
             }
-            let Some(Window { first, last }) = window else { continue };
-            if boxes[first..=last].iter().any(|other| other.meets(&bounds)) {
-                faced[facet] = Some(Window { first, last });
-            }
-        }
+        });
         faced
     }
 }

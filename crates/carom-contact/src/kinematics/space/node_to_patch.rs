@@ -247,13 +247,20 @@ impl NodeToPatch {
         }
         let from = place(y, node);
         let own = patch.nearest(y, from);
-        let mut best = None;
+        let is_across =
+            |facet: usize| (0..corners).any(|edge| self.primary.across(pair.facet, edge) == Some(facet));
+        let mut best: Option<(usize, f64, [f64; 2])> = None;
         for &facet in self.primary.ring(pair.facet) {
             if self.primary.is_mirror(facet) || !self.may_take(node, facet, y) {
                 continue;
             }
             let found = self.primary.patch(facet).nearest(y, from);
-            let least = best.map_or((1.0 - ROUND_OFF) * own.distance, |(_, least, _)| least);
+            // Of two that are as near, as beside a corner over an edge, that across an own edge:
+            // the pairs of a node on both sides of the edge slide on side by side.
+            let least = best.map_or((1.0 - ROUND_OFF) * own.distance, |(known, least, _)| {
+                let leads = f64::from(i8::from(is_across(facet)) - i8::from(is_across(known)));
+                (1.0 + leads * ROUND_OFF) * least
+            });
             let lies_on = || match found.at {
                 Feature::Inside => true,
                 Feature::Edge(edge) => self.lies_on_edge(pair.facet, facet, edge, from, y),
