@@ -182,7 +182,8 @@ impl Rows {
     }
 
     /// Replaces the rows from `first` on by the means of every `stride`-th of them, each over all
-    /// their nodes: those of the first row in its order, then the others.
+    /// their nodes: the nodes, or the nodes of the edges, with which the rows begin, then the
+    /// others, each in the order of the rows.
     pub(crate) fn average_from(&mut self, first: usize, stride: usize) {
         let end = self.len();
         (first..(first + stride).min(end)).for_each(|row| self.push_mean(row, end, stride));
@@ -202,25 +203,31 @@ impl Rows {
         let share = 1.0 / rows.len() as f64;
         let d = self.dimension;
         let start = self.nodes.len();
-        let mut gap = 0.0;
-        for row in rows {
-            gap += share * self.gaps[row];
-            for k in self.starts[row]..self.starts[row + 1] {
-                let node = self.nodes[k];
-                let known = self.nodes[start..].iter().position(|&other| other == node);
-                let at = start + known.unwrap_or(self.nodes.len() - start);
-                if known.is_none() {
-                    self.nodes.push(node);
-                    self.gradients.resize(d * self.nodes.len(), 0.0);
-                }
-                for i in 0..d {
-                    self.gradients[d * at + i] += share * self.gradients[d * k + i];
+        let gap: f64 = rows.clone().map(|row| share * self.gaps[row]).sum();
+        let mut own = 0;
+        for is_own in [true, false] {
+            for row in rows.clone() {
+                let [from, to] = [self.starts[row], self.starts[row + 1]];
+                // An open row has no nodes.
+                let middle = (from + self.own[row]).min(to);
+                for k in if is_own { from..middle } else { middle..to } {
+                    let node = self.nodes[k];
+                    let known = self.nodes[start..].iter().position(|&other| other == node);
+                    let at = start + known.unwrap_or(self.nodes.len() - start);
+                    if known.is_none() {
+                        self.nodes.push(node);
+                        self.gradients.resize(d * self.nodes.len(), 0.0);
+                    }
+                    for i in 0..d {
+                        self.gradients[d * at + i] += share * self.gradients[d * k + i];
+                    }
                 }
             }
+            own = if is_own { self.nodes.len() - start } else { own };
         }
         self.gaps.push(gap);
         self.reversed.push(false);
-        self.own.push(1);
+        self.own.push(own);
         self.starts.push(self.nodes.len());
     }
 

@@ -21,6 +21,13 @@ pub enum LogEvent {
         /// Reason.
         rejected: Rejected,
     },
+    /// No load step converges from a start that lacks balance, and what is lacking fades.
+    Faded {
+        /// Time at the start.
+        time: f64,
+        /// Time until which it fades.
+        end: f64,
+    },
     /// The run would have stopped, and the fallback takes the grid step.
     Fallback {
         /// Time at its start.

@@ -11,6 +11,7 @@ use crate::grid::Grid;
 use crate::grid_report::{Attempt, GridReport, LogEvent};
 use crate::model::Model;
 use crate::rejected::Rejected;
+use crate::stage::balance::lacks_balance;
 use crate::start::{Inertia, InitialState, start};
 use crate::state::{FEW, OtherModel, State};
 use crate::stepper::Stepper;
@@ -211,7 +212,7 @@ impl Simulation {
         let before = self.fallback.is_some().then(|| report.clone());
         let step = self.state.step;
         let end = self.grid.time(step) + self.grid.length(step + 1);
-        let state = match (self.grid_or_first_step(report, watch), before) {
+        let state = match (self.step_or_fade(report, watch), before) {
             (Err(stopped), Some(before)) if stopped.is_of_the_method(end) => {
                 let time = self.state.time;
                 let dt = self.grid.length(step + 1);
@@ -225,21 +226,31 @@ impl Simulation {
         Ok(())
     }
 
-    /// The state at the next grid time, by the stepper. The start of a run may lack balance, as
-    /// where a support lets go or loads act at once, by as much as a load step of any length has to
-    /// give: where it cannot, what is lacking fades until the end of the grid step.
-    fn grid_or_first_step(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<State, Stopped> {
+    /// The state at the next grid time, by the stepper. A start that lacks balance, as where a
+    /// support lets go or loads act at once, asks a load step of any length for the same: where
+    /// none converges, what is lacking fades until the end of the grid step.
+    fn step_or_fade(&mut self, report: &mut GridReport, watch: &mut Watch) -> Result<State, Stopped> {
+        let may_fade = self.state.step == 0 && self.stepper.is_static();
+        let before = may_fade.then(|| report.clone());
         let stepped = self.grid_step(false, report, watch);
         let end = self.grid.time(0) + self.grid.length(1);
-        let may_fade = self.state.step == 0 && self.stepper.is_static();
-        match stepped {
-            Err(stopped) if may_fade && stopped.is_of_the_method(end) => {
+        match (stepped, before) {
+            (Err(stopped), Some(before))
+                if stopped.is_of_the_method(end) && lacks_balance(&self.model, &self.state) =>
+            {
+                let trace = std::mem::take(&mut self.work.trace);
+                report.return_to(before);
+                report.events.push(LogEvent::Faded { time: self.state.time, end });
                 self.work.fade_until = Some(end);
                 let faded = self.grid_step(false, report, watch);
                 self.work.fade_until = None;
-                faded.map_err(|again| if again.is_of_the_method(end) { stopped } else { again })
+                if faded.as_ref().is_err_and(|again| again.is_of_the_method(end)) {
+                    self.work.trace = trace;
+                    return Err(stopped);
+                }
+                faded
             }
-            _ => stepped,
+            (stepped, _) => stepped,
         }
     }
 

@@ -36,6 +36,8 @@ pub struct Workspace {
     pub(crate) linear: LinearProblem,
     /// The last iterations, to explain a rejection.
     pub(crate) trace: Trace,
+    /// Dependent gaps that were reported last, and in how many steps without a change.
+    told: (Vec<(usize, usize)>, u32),
     /// Time until which what load steps lack of balance at the start fades; none if they reach
     /// balance in each.
     pub(crate) fade_until: Option<f64>,
@@ -55,8 +57,19 @@ impl Workspace {
             undeclared: Undeclared::new(model),
             linear: LinearProblem::new(model),
             trace: Trace::default(),
+            told: (Vec::new(), 0),
             fade_until: None,
         }
+    }
+
+    /// Dependent gaps to report, by contact and node; none if they are those of the last two steps.
+    /// Schemes with many steps would report the same ones in each.
+    pub(crate) fn tell(&mut self, gaps: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
+        if gaps != self.told.0 {
+            self.told = (gaps, 0);
+        }
+        self.told.1 += 1;
+        if self.told.1 <= 2 { self.told.0.clone() } else { Vec::new() }
     }
 
     /// A copy of a state, in reused memory.

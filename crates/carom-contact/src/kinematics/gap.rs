@@ -125,10 +125,12 @@ impl Gap {
         // Every vector of the stencil is a scalar per node times n or t.
         let phi = |p: usize| if p == 0 { 1.0 } else { -self.weight(p - 1) };
         let slope = |p: usize| if p == 0 { 0.0 } else { self.shape.first[p - 1] };
-        let [of_tn, of_tt, of_nn] = [-a.recip(), -kappa / (a * j * j), -gap / a];
+        let mixed = -a.recip();
+        let of_tt = -kappa / (a * j * j);
+        let of_nn = -gap / a;
         for q in 0..count {
-            let beside_t = n * (of_tn * slope(q)) + t * (of_tt * phi(q));
-            let beside_n = t * (of_tn * phi(q)) + n * (of_nn * slope(q));
+            let beside_t = n * (mixed * slope(q)) + t * (of_tt * phi(q));
+            let beside_n = t * (mixed * phi(q)) + n * (of_nn * slope(q));
             for p in 0..count {
                 let block: Mat<2> = (t * phi(p)).outer(&beside_t) + (n * slope(p)).outer(&beside_n);
                 for i in 0..d {

@@ -206,38 +206,54 @@ pub(super) trait OnFacets {
     }
 
     /// Overwrites the first entries of `mean` with the mean of the matrices of pairs, over the
-    /// nodes of their mean row ([`Rows::average_from`]).
+    /// nodes of their mean row.
     fn mean_matrix(&self, parts: &[Pair], mean: &mut [f64], matrix: impl Fn(&Pair, &mut [f64])) {
-        let dimension = self.dimension();
-        let nodes: Vec<Vec<usize>> = parts.iter().map(|part| self.nodes_with(part)).collect();
-        let mut all: Vec<usize> = Vec::new();
-        for &node in nodes.iter().flatten() {
-            if !all.contains(&node) {
-                all.push(node);
-            }
-        }
-        let size = dimension * all.len();
-        // A pair may have moved to a joint of more facets since its row was measured: its tangent
-        // is then left out, and the next iteration has it.
-        let Some(mean) = mean.get_mut(..size * size) else {
-            mean.fill(0.0);
-            return;
+        let nodes_of = |part: &Pair| {
+            let mut own = self.nodes_with(part);
+            let others = own.split_off(1);
+            [own, others]
         };
+        let nodes: Vec<_> = parts.iter().map(nodes_of).collect();
+        mean_of_matrices(self.dimension(), &nodes, mean, |part, of_part| matrix(&parts[part], of_part));
+    }
+}
+
+/// Overwrites the first entries of `mean` with the mean of matrices over nodes, over those of the
+/// mean row ([`Rows::average_from`]); `nodes`: those with which each row begins, and the others.
+pub(super) fn mean_of_matrices(
+    dimension: usize,
+    nodes: &[[Vec<usize>; 2]],
+    mean: &mut [f64],
+    matrix: impl Fn(usize, &mut [f64]),
+) {
+    let mut all: Vec<usize> = Vec::new();
+    for &node in [0, 1].into_iter().flat_map(|part| nodes.iter().flat_map(move |of| &of[part])) {
+        if !all.contains(&node) {
+            all.push(node);
+        }
+    }
+    let size = dimension * all.len();
+    // A pair may have moved to a joint of more facets since its row was measured: its tangent is
+    // then left out, and the next iteration has it.
+    let Some(mean) = mean.get_mut(..size * size) else {
         mean.fill(0.0);
-        for (part, nodes) in parts.iter().zip(&nodes) {
-            let own = dimension * nodes.len();
-            let mut of_part = vec![0.0; own * own];
-            matrix(part, &mut of_part);
-            let place = |dof: usize| {
-                let node = nodes[dof / dimension];
-                let at = all.iter().position(|&other| other == node).unwrap_or(0);
-                dimension * at + dof % dimension
-            };
-            for row in 0..own {
-                for column in 0..own {
-                    mean[place(row) * size + place(column)] +=
-                        of_part[row * own + column] / parts.len() as f64;
-                }
+        return;
+    };
+    mean.fill(0.0);
+    let count = nodes.len() as f64;
+    for (part, of) in nodes.iter().enumerate() {
+        let nodes = of.concat();
+        let own = dimension * nodes.len();
+        let mut of_part = vec![0.0; own * own];
+        matrix(part, &mut of_part);
+        let place = |dof: usize| {
+            let node = nodes[dof / dimension];
+            let at = all.iter().position(|&other| other == node).unwrap_or(0);
+            dimension * at + dof % dimension
+        };
+        for row in 0..own {
+            for column in 0..own {
+                mean[place(row) * size + place(column)] += of_part[row * own + column] / count;
             }
         }
     }

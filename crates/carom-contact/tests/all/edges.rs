@@ -337,6 +337,46 @@ fn a_crossing_at_nodes_has_one_pair() {
     assert_eq!(pairs.len(), 1, "{pairs:?}");
 }
 
+/// Ridges that bend at the nodes over which they cross: the normal is the mean of those of the four
+/// pairs of edges, and derivatives are those of the mean gap.
+#[test]
+fn a_crossing_at_nodes_has_the_mean_of_all_edges_there() {
+    let sags = |[x, y, z]: [f64; 3]| [x, y, z - 0.1 * (x - 1.0) * (x - 1.0)];
+    let (contact, y) = roofs(FacetShape::Q4, 2, 0.0, sags);
+    let upper = y.len() / 6;
+    let at = |z: f64| placed(&y, upper, [0.05, -0.1, z], 0.0);
+    let pairs = found(&contact, &at(0.01), &at(-0.01));
+    assert!(pairs.len() == 1 && pairs[0].joint == Some(3), "{pairs:?}");
+    let y = at(-0.01);
+    let rows_at = |y: &[f64]| {
+        let mut rows = Rows::new(3);
+        let mut pair = Pair { active: true, ..pairs[0] };
+        contact.measure(&mut pair, y, &mut rows).unwrap();
+        (rows, pair)
+    };
+    let (rows, pair) = rows_at(&y);
+    let [x, z, up] = rows.row(0).normal();
+    assert!(x.abs().max(z.abs()) < 1e-14 && up > 0.9, "{x:e} {z:e} {up}");
+    let nodes = rows.row(0).nodes.to_vec();
+    assert_eq!(nodes.len(), 6);
+    let moved = |x: &[f64]| {
+        let mut all = y.clone();
+        for (k, node) in nodes.iter().enumerate() {
+            all[3 * node..3 * node + 3].copy_from_slice(&x[3 * k..3 * k + 3]);
+        }
+        all
+    };
+    let start: Vec<f64> = nodes.iter().flat_map(|node| y[3 * node..3 * node + 3].to_vec()).collect();
+    let gap = |x: &[f64]| vec![rows_at(&moved(x)).0.row(0).gap];
+    let error = jacobian_error(&start, 1e-3, gap, rows.row(0).gradient);
+    assert!(error < 1e-9, "gradient {error:e}");
+    let mut matrix = vec![0.0; start.len() * start.len()];
+    contact.curvature_into(&pair, &y, &mut matrix);
+    let gradient = |x: &[f64]| rows_at(&moved(x)).0.row(0).gradient.to_vec();
+    let error = jacobian_error(&start, 1e-3, gradient, &matrix);
+    assert!(error < 1e-8, "second derivative {error:e}");
+}
+
 #[test]
 fn an_edge_that_passes_through_an_edge_within_a_step_is_found() {
     let (contact, y) = roofs(FacetShape::Q4, 3, 0.1, straight);

@@ -59,21 +59,31 @@ pub(crate) fn is_dependent<'a>(model: &Model, rows: impl Iterator<Item = Row<'a>
     independent_above(model, counted).len() < count
 }
 
-/// Contact and pair of closed gaps that depend on those of other contacts: which of them presses,
-/// and rubs by its law, is arbitrary.
+/// The closed gaps, by contact and pair, that depend on those of other contacts at the same place,
+/// one of which rubs: which of them presses, and rubs by its law, is arbitrary.
 pub(crate) fn dependent_on_others<'a>(
     model: &Model,
     gaps: impl Iterator<Item = ((usize, usize), Row<'a>)>,
 ) -> Vec<(usize, usize)> {
     let mut all = Independent::default();
     let mut of_contacts: BTreeMap<usize, Independent> = BTreeMap::new();
-    let is_arbitrary = |&(place, row): &((usize, usize), Row)| {
+    let mut seen: Vec<(usize, SparseRow)> = Vec::new();
+    let rubs = |contact: usize| model.contacts[contact].friction.is_some();
+    let mut found = Vec::new();
+    for (place, row) in gaps {
         let row = on_free_dofs(model, row);
         let is_new_there = of_contacts.entry(place.0).or_default().accept(row.clone(), NEARLY);
-        let is_new = all.accept(row, NEARLY);
-        is_new_there && !is_new
-    };
-    gaps.filter(is_arbitrary).map(|(place, _)| place).collect()
+        let is_new = all.accept(row.clone(), NEARLY);
+        let shares = |other: &SparseRow| other.iter().any(|(dof, _)| row.iter().any(|(own, _)| own == dof));
+        let meets = |(contact, other): &(usize, SparseRow)| {
+            *contact != place.0 && (rubs(*contact) || rubs(place.0)) && shares(other)
+        };
+        if is_new_there && !is_new && seen.iter().any(meets) {
+            found.push(place);
+        }
+        seen.push((place.0, row));
+    }
+    found
 }
 
 /// Whether some node presses with several pairs, as in a corner: only there slips in the plane can

@@ -11,14 +11,15 @@
 //! is enforced at s + 1 only. f_ext is gravity and the loads, evaluated at the same time (and, for
 //! pressures, positions) as f_int. The residual of a constrained dof is its reaction force.
 //!
-//! What the start of a run lacks of balance, as where a support lets go of a strained body or a
-//! load acts at once, does not become smaller with a load step. Where no step reaches balance from
+//! A lack of balance at the start of a run, as where a support lets go of a strained body or a load
+//! acts at once, does not become smaller with a load step. Where no step reaches balance from
 //! there, it fades in proportion to the time until the end of the first step of the grid.
 //!
 //! At prescribed dofs the acceleration ü is known, and M ü acts on the neighbours like an external
 //! force, averaged with α_f. The scheme's own a is another quantity, with a delay of (α_f − α_m)Δt
 //! (Erlicher, Bonaventura, Bursi 2002): averaging ü with α_m instead costs an order.
 
+use carom_algebra::sums::dot;
 use carom_algebra::wide;
 use carom_time::{Stage, Weights};
 
@@ -73,8 +74,23 @@ pub(crate) fn known_into(model: &Model, stage: &Stage, state: &State, known: &mu
     }
 }
 
-/// What the forces at the start of a load step lack of balance, times a share; nothing on
-/// prescribed dofs, where it is their reaction.
+/// Share of the forces above which they are not in balance: far above the tolerance of a step.
+const UNBALANCED: f64 = 1e-6;
+
+/// Whether the forces of a state without inertia are not in balance.
+pub(crate) fn lacks_balance(model: &Model, state: &State) -> bool {
+    let mut lacking = Vec::new();
+    imbalance_into(model, state, 1.0, &mut lacking);
+    let all = [&state.f_internal, &state.f_contact, &state.f_external, &model.gravity];
+    norm(&lacking) > UNBALANCED * all.map(|forces| norm(forces)).iter().sum::<f64>()
+}
+
+fn norm(x: &[f64]) -> f64 {
+    dot(x, x).sqrt()
+}
+
+/// Overwrites `known` with a share of the lack of balance of the forces at the start of a load
+/// step; nothing on prescribed dofs, where it is their reaction.
 pub(crate) fn imbalance_into(model: &Model, state: &State, share: f64, known: &mut Vec<f64>) {
     known.clear();
     known.extend((0..model.dofs()).map(|i| {

@@ -329,6 +329,9 @@ impl Explicit {
             let step = Increments { model, state, before, dt, inverse_mass: &self.inverse_mass };
             step.solve(&mut velocity, scratch, report)
         })?;
+        let dependent = std::mem::take(&mut report.dependent);
+        report.dependent = work.tell(dependent);
+        let Workspace { explicit: scratch, .. } = work;
         let HalfStepVelocity { longest, .. } = &mut state.half_step;
         *longest = if is_behind { longest.max(dt) } else { dt };
 

@@ -209,7 +209,7 @@ impl Impulses {
         Cone { matrix, right: &mut right, kinds: &self.kinds, is_dependent: self.dependent }.solve(values)
     }
 
-    /// Contact and pair of gaps whose friction may as well be that of another contact.
+    /// The gaps, by contact and pair, whose friction may as well be that of another contact.
     pub(super) fn with_arbitrary_friction(&self, model: &Model) -> Vec<(usize, usize)> {
         if !self.dependent || !model.has_friction() {
             return Vec::new();

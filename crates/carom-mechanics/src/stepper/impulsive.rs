@@ -168,7 +168,8 @@ impl Stepper for Impulsive {
         }
         impulses.record(dt, &mut next, &mut pairings);
         let node = |(k, p): (usize, usize)| (k, model.contacts[k].node(&pairings[k].pairs[p]));
-        report.dependent.extend(impulses.with_arbitrary_friction(model).into_iter().map(node));
+        let dependent = impulses.with_arbitrary_friction(model).into_iter().map(node).collect();
+        report.dependent.extend(work.tell(dependent));
         // Nodes that arrived later in the step than the prediction are tracked from now on.
         measure_into(model, &next.y, &mut pairings, &mut Vec::new())?;
         search(model, &state.y, &next.y, &mut pairings, &mut report.events);

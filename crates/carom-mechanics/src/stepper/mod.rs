@@ -48,7 +48,8 @@ pub struct StepReport {
     pub ambiguity: Option<f64>,
     /// Whether the equilibrium of a load step is unstable.
     pub unstable: bool,
-    /// Contact and node of closed gaps without multipliers, because they depend on others.
+    /// Contact and node of closed gaps that depend on others: without multipliers, or with an
+    /// arbitrary share of their impulse.
     pub dependent: Vec<(usize, usize)>,
     /// Jump of kinetic energy where contact or stick begins.
     pub projection: f64,
@@ -122,7 +123,8 @@ pub trait Stepper: Send + Sync {
         false
     }
 
-    /// Whether its steps are load steps, without inertia.
+    /// Whether its steps are load steps, without inertia, that let fade what the start of a run
+    /// lacks of balance if they are asked to.
     fn is_static(&self) -> bool {
         false
     }

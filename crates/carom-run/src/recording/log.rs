@@ -50,6 +50,12 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
                 .with("dt", *dt)
                 .with("reason", rejected.kind())
         }
+        LogEvent::Faded { time, end } => {
+            let message = format!(
+                "no load step converges from the start, which is not in balance: what is lacking fades until t = {end:?} [time]"
+            );
+            Event::new(step, *time, "faded", message).with("end", *end)
+        }
         LogEvent::Fallback { time, dt, reason } => {
             let message = format!(
                 "step of {dt:.6e} [time] taken by the fallback, backward Euler with contact implicit in velocity; without it: {reason}"
@@ -137,8 +143,9 @@ pub(super) fn entry(model: &Model, step: u64, event: &LogEvent) -> Event {
             let places =
                 gaps.iter().map(|(contact, node)| format!("node {node} of \"{}\"", contact_name(*contact)));
             let places = places.collect::<Vec<_>>().join(", ");
-            let message =
-                format!("closed without a multiplier: {places}: other gaps, supports or ties determine this");
+            let message = format!(
+                "closed without a force of its own: {places}: other gaps, supports or ties determine this"
+            );
             Event::new(step, *time, "dependent", message).with("places", places)
         }
         LogEvent::Projection { time, jump } => {

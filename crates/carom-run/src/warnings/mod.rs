@@ -53,7 +53,7 @@ pub struct Entry {
 }
 
 /// All warnings.
-pub const WARNINGS: [Entry; 34] = [
+pub const WARNINGS: [Entry; 35] = [
     Entry {
         id: "coarse-secondary",
         why: "nodes of the primary side may penetrate between those of the secondary one, by a fiftieth of the \
@@ -200,8 +200,8 @@ pub const WARNINGS: [Entry; 34] = [
         id: "dependent-gaps",
         why: "without friction forces and their sum are right, but how the pressure is shared between these nodes and \
               others is not determined: pressures there may be anything, and with different mu so may friction",
-        advice: "enforcement = \"augmented\"; the finer side as the primary one if the secondary one is held; a side \
-                 without the nodes that supports or ties hold",
+        advice: "enforcement = \"augmented\" (implicit schemes); the finer side as the primary one if the secondary one \
+                 is held; a side without the nodes that supports or ties hold",
         rule: Rule::Record(record::dependent_gaps),
     },
     Entry {
@@ -257,6 +257,14 @@ pub const WARNINGS: [Entry; 34] = [
         advice: "a small load or imperfection to the side, with load steps short enough to follow where it leads; or [initial] from \
                  this run and a dynamic scheme, with steps that resolve how the motion grows: long implicit steps damp it, and stay",
         rule: Rule::Record(record::unstable_equilibrium),
+    },
+    Entry {
+        id: "faded-start",
+        why: "the way to the equilibrium is another one than that of the loads at once: with friction or plastic flow so \
+              may be the equilibrium, and `dissipation` contains the work of what fades",
+        advice: "loads that grow with t from zero, or a grip that eases off by a traction; nothing for elastic bodies \
+                 without friction",
+        rule: Rule::Record(record::faded_start),
     },
     Entry {
         id: "fallback-steps",

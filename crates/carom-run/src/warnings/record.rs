@@ -252,8 +252,8 @@ pub(super) fn dependent_gaps(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
     for event in events(run, "dependent") {
         let places = event.data.get("places").and_then(|places| places.as_str()).unwrap_or_default();
         places.split(", ").for_each(|place| steps.entry(place).or_default().push(event.time));
-        steps.values_mut().for_each(Vec::dedup);
     }
+    steps.values_mut().for_each(Vec::dedup);
     steps.retain(|_, times| times.len() >= least);
     let Some(first) = steps.values().flatten().copied().reduce(f64::min) else { return Vec::new() };
     let mut named: Vec<&str> = steps.keys().copied().take(NODES).collect();
@@ -261,11 +261,20 @@ pub(super) fn dependent_gaps(case: &Case, _: &Model, run: &Run) -> Vec<Found> {
         named.push("others");
     }
     let what = format!(
-        "other gaps, supports or ties keep nodes closed that have no multiplier, from t = {} on: {}",
+        "other gaps, supports or ties keep nodes closed that have no force of their own, from t = {} on: {}",
         short(first),
         named.join(", ")
     );
     vec![Found::of_the_run(what)]
+}
+
+/// A start of load steps from which what it lacked of balance had to fade.
+pub(super) fn faded_start(_: &Case, _: &Model, run: &Run) -> Vec<Found> {
+    first_of(run, "faded", |time, _| {
+        format!(
+            "no load step converged from t = {time}, where forces are not in balance; what is lacking fades"
+        )
+    })
 }
 
 /// Grid steps that the fallback took.

@@ -206,6 +206,35 @@ fn slabs_whose_edges_cross_at_nodes_are_not_pushed_sideways() {
     }
 }
 
+/// Two bars fall edge on edge, node on node. Edges bend there, and the normals of the four pairs of
+/// edges at the nodes lean to all sides: by symmetry the bars part straight, with friction as
+/// without.
+#[test]
+fn bars_that_cross_at_nodes_part_straight() {
+    let at_nodes = |scheme: &str, contact: &str| {
+        let text = bars(scheme, contact).replace("[3, 1, 1]", "[4, 1, 1]").replace("[1, 3, 1]", "[1, 4, 1]");
+        finish(&text.replace("0.03, 0.02", "0.0, 0.0"))
+    };
+    for scheme in [
+        CHUNG_HULBERT,
+        "kind = \"bathe\", rho_inf = 0.0",
+        "kind = \"moreau-jean\", theta = 0.5",
+        "kind = \"central-difference\"",
+    ] {
+        let parted = ["", "mu = 0.3"].map(|contact| {
+            let sim = at_nodes(scheme, contact);
+            let nodes = sim.model().parts[1].nodes();
+            let count = nodes.len() as f64;
+            let mean =
+                |axis: usize| nodes.clone().map(|node| sim.state().v[3 * node + axis]).sum::<f64>() / count;
+            let [x, y, z] = [0, 1, 2].map(mean);
+            assert!(x.abs().max(y.abs()) < 1e-8 && z > -1.5, "{scheme} {contact}: {x:e} {y:e} {z}");
+            z
+        });
+        assert!((parted[0] - parted[1]).abs() < 1e-6, "{scheme}: {parted:?}");
+    }
+}
+
 #[test]
 fn an_elastic_impact_of_edges_conserves_energy() {
     let text = bars("kind = \"energy-momentum\"", "restitution = 1.0");

@@ -165,7 +165,7 @@ fn a_quarter_in_space_rubs_like_the_whole() {
     assert!(corner.active && corner.tangential.traction == [0.0; 2], "{corner:?}");
 }
 
-/// And it has none where an obstacle moves along the plane.
+/// A node in a plane of symmetry has no friction either where an obstacle moves along that plane.
 #[test]
 fn half_a_block_below_a_moving_circle_is_half_of_the_whole() {
     let case = r#"

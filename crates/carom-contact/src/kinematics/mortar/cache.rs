@@ -44,12 +44,13 @@ pub(super) struct Cache {
 }
 
 impl Cache {
-    /// The place of the configuration with the positions `y` of the `nodes` of both sides. If it is
-    /// new, `regions` are those of the primary in it, and none of the `facets` of the secondary
+    /// The number of the configuration with the positions `y` of the `nodes` of both sides. If it
+    /// is new, `regions` are those of the primary in it, and none of the `facets` of the secondary
     /// side is measured.
     pub(super) fn find(
         &mut self,
-        (nodes, y): (&[usize], Places),
+        nodes: &[usize],
+        y: Places,
         regions: impl FnOnce() -> Regions,
         facets: usize,
     ) -> usize {
@@ -71,13 +72,13 @@ impl Cache {
         self.latest
     }
 
-    /// A configuration by its place.
-    pub(super) fn get(&mut self, place: usize) -> &mut Configuration {
-        &mut self.known[place]
+    /// A configuration by its number.
+    pub(super) fn get(&mut self, number: usize) -> &mut Configuration {
+        &mut self.known[number]
     }
 
-    /// The regions of two configurations by their places.
-    pub(super) fn regions(&self, places: [usize; 2]) -> [&Regions; 2] {
-        places.map(|place| &self.known[place].regions)
+    /// The regions of two configurations by their numbers.
+    pub(super) fn regions(&self, numbers: [usize; 2]) -> [&Regions; 2] {
+        numbers.map(|number| &self.known[number].regions)
     }
 }

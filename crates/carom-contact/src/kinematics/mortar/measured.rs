@@ -45,10 +45,10 @@ impl Mortar {
         of(cache.regions(known))
     }
 
-    /// Place of the configuration with positions `y` in a cache.
+    /// Number of the configuration with positions `y` in a cache.
     fn configuration(&self, cache: &mut Cache, y: Places) -> usize {
         let regions = || self.opposite.regions(self.opposite.facets(), y);
-        cache.find((&self.surface, y), regions, self.secondary.facets())
+        cache.find(&self.surface, y, regions, self.secondary.facets())
     }
 
     /// Measures a facet, and those on which its carriers depend.

@@ -225,7 +225,7 @@ impl Kinematics for Mortar {
     }
 
     fn in_plane_of_symmetry(&self, multiplier: usize) -> Option<InPlane> {
-        self.ends_in_plane_of_symmetry(multiplier)
+        self.plane_of_symmetry_of(multiplier)
     }
 
     fn pressure_field(&self, pairs: &[Pair], y: &[f64], thickness: f64) -> Vec<NodalPressure> {

@@ -20,9 +20,9 @@ struct EndInPlane {
 }
 
 impl Mortar {
-    /// The nodes of both sides in the plane of symmetry in which a multiplier stands for the
-    /// pressure; of an obstacle none.
-    pub(super) fn ends_in_plane_of_symmetry(&self, multiplier: usize) -> Option<InPlane> {
+    /// The plane of symmetry in which a multiplier stands for the pressure, with the nodes of both
+    /// sides there; of an obstacle none.
+    pub(super) fn plane_of_symmetry_of(&self, multiplier: usize) -> Option<InPlane> {
         let ends = self.multipliers[multiplier].parts.iter().flat_map(|part| {
             let ends = [(0, false), (self.degree, true)].into_iter();
             let at_end = ends.filter(|(polynomial, _)| *polynomial == part.polynomial);

@@ -155,7 +155,7 @@ impl Way for OnWay<'_, '_> {
             }
             let y = self.between.flat();
             let Some(gap) = self.contact.closest(edges, xi, y) else { break };
-            if let Some(next) = self.contact.beyond(edges, gap.xi) {
+            if let Some(next) = self.contact.beyond(edges, gap.xi, PAST_END) {
                 edges = next.edges;
                 xi = next.xi;
                 continue;

@@ -32,6 +32,7 @@ use crate::rows::Rows;
 type Held = ([usize; 2], Option<EdgeGap>);
 
 /// A point of an edge of the secondary side and one of an edge of the primary.
+#[derive(Clone, Copy)]
 pub(super) struct OnEdges {
     pub(super) edges: [usize; 2],
     pub(super) xi: [f64; 2],
@@ -41,7 +42,7 @@ pub(super) struct OnEdges {
 #[derive(Debug)]
 pub struct EdgeToEdge {
     /// Sharp edges of the secondary side and of the primary side.
-    sides: [Edges; 2],
+    pub(super) sides: [Edges; 2],
     /// A node of every edge of the secondary side, which represents the edge.
     names: Vec<usize>,
     /// For contact of a side with itself: the order of its places.
@@ -99,7 +100,7 @@ impl EdgeToEdge {
     }
 
     /// Numbers of the two edges of a pair, each on its side.
-    fn of(&self, pair: &Pair) -> [usize; 2] {
+    pub(super) fn of(&self, pair: &Pair) -> [usize; 2] {
         [pair.node, pair.facet - self.sides[1].facets()]
     }
 
@@ -198,11 +199,11 @@ impl EdgeToEdge {
         (came || self.crossing(&mut self.swept(), edges, before, now).is_some()).then_some(gap)
     }
 
-    /// The point on the next edge for each of two edges past whose end its coordinate ξ lies, if
-    /// another edge continues one of them.
-    pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2]) -> Option<OnEdges> {
+    /// The point on the next edge for each of two edges past whose end its coordinate ξ lies, by
+    /// more than a tolerance, if another edge continues one of them.
+    pub(super) fn beyond(&self, edges: [usize; 2], xi: [f64; 2], tolerance: f64) -> Option<OnEdges> {
         let mut to = OnEdges { edges, xi };
-        for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + PAST_END) {
+        for i in (0..2).filter(|&i| xi[i].abs() > 1.0 + tolerance) {
             if let Some(next) = self.sides[i].beyond(edges[i], xi[i]) {
                 to.edges[i] = next.edge;
                 to.xi[i] = next.xi;
@@ -211,12 +212,20 @@ impl EdgeToEdge {
         (to.edges != edges).then_some(to)
     }
 
-    /// The edges to which a pair whose contact point is past an end is handed over, with their gap,
-    /// if an edge continues there.
-    fn next(&self, edges: [usize; 2], xi: [f64; 2], y: &[f64]) -> Option<([usize; 2], EdgeGap)> {
-        let OnEdges { edges, xi } = self.beyond(edges, xi)?;
-        let gap = self.closest(edges, xi, y)?;
-        let goes_on = self.may_meet(edges) && self.is_on(edges, gap.xi, PAST_END, PAST_END);
+    /// The edges to which a pair whose contact point is past an end, by more than a tolerance, is
+    /// handed over, with their gap, if an edge continues there past whose end it lies less. Where
+    /// the gap of both is the same, as over the joint, it does not jump.
+    fn next(
+        &self,
+        edges: [usize; 2],
+        xi: [f64; 2],
+        tolerance: f64,
+        y: &[f64],
+    ) -> Option<([usize; 2], EdgeGap)> {
+        let OnEdges { edges, xi: start } = self.beyond(edges, xi, tolerance)?;
+        let gap = self.closest(edges, start, y)?;
+        let is_nearer = past_ends(gap.xi) < past_ends(xi);
+        let goes_on = is_nearer && self.may_meet(edges) && self.is_on(edges, gap.xi, PAST_END, PAST_END);
         (goes_on && self.cross(edges, &gap, EDGES_OUTSIDE, y)).then_some((edges, gap))
     }
 
@@ -231,18 +240,26 @@ impl EdgeToEdge {
     ) -> (bool, Vec<Held>) {
         let starts = std::mem::replace(&mut pairing.fresh, false);
         let y = if starts { before } else { now };
+        // Within a solve pairs would go there and back.
+        let tolerance = if starts { ROUND_OFF } else { PAST_END };
         let mut known: BTreeSet<[usize; 2]> = pairing.pairs.iter().map(|pair| self.of(pair)).collect();
         let mut changed = false;
         pairing.pairs.retain_mut(|pair| {
+            if starts {
+                self.start_joint(pair, y, &mut known);
+            }
             let edges = self.of(pair);
             let gap = self.gap_of(pair, y);
             let node = self.sides[0].nodes(edges[0])[0];
-            if let Some((to, gap)) = gap.and_then(|gap| self.next(edges, gap.xi, y))
+            // Over a joint all edges there count, whichever the pair has.
+            if pair.joint.is_none()
+                && let Some((to, gap)) = gap.and_then(|gap| self.next(edges, gap.xi, tolerance, y))
                 && known.insert(to)
             {
                 let facet = self.sides[1].facets() + to[1];
                 let handed = pair.handed + edges[0] as isize - to[0] as isize;
-                *pair = Pair { node: to[0], facet, handed, begins: true, ..*pair };
+                let joint = self.joints(to, &gap, y);
+                *pair = Pair { node: to[0], facet, handed, begins: true, joint, ..*pair };
                 [pair.xi, pair.eta] = gap.xi;
                 let from = self.sides[1].facets() + edges[1];
                 if pair.active && from != pair.facet {
@@ -320,7 +337,7 @@ impl EdgeToEdge {
         crate::kinematics::zero(start.distance, gap.distance)
     }
 
-    fn lost(&self, pair: &Pair) -> ContactError {
+    pub(super) fn lost(&self, pair: &Pair) -> ContactError {
         ContactError::Edges { node: self.sides[0].nodes(pair.node)[0], facet: pair.facet }
     }
 
@@ -330,6 +347,11 @@ impl EdgeToEdge {
         rows.push_both(gap, nodes, slopes);
         rows.begin_with_edge(nodes[0].len());
     }
+}
+
+/// How far two coordinates lie past the ends of their edges.
+pub(super) fn past_ends(xi: [f64; 2]) -> f64 {
+    xi.map(|xi| (xi.abs() - 1.0).max(0.0)).iter().sum()
 }
 
 impl Kinematics for EdgeToEdge {
@@ -383,21 +405,22 @@ impl Kinematics for EdgeToEdge {
             }
         });
         // Edges on which the contact point lies come before edges that continue them.
-        let past = |(_, gap): &([usize; 2], EdgeGap)| gap.xi.map(|xi| (xi.abs() - 1.0).max(0.0)).iter().sum();
-        found.sort_by(|a, b| f64::total_cmp(&past(a), &past(b)));
+        found.sort_by(|a, b| past_ends(a.1.xi).total_cmp(&past_ends(b.1.xi)));
         for (edges, gap) in found {
             let near = EDGES_TOGETHER * self.shorter(edges, now);
+            let joint = self.joints(edges, &gap, now);
             let is_held = all.iter().any(|(known, other)| {
                 let joins = (0..2).all(|i| self.sides[i].is_near(edges[i], known[i]));
                 let same = |other: &EdgeGap| {
-                    (other.point(0) - gap.point(0)).norm() < near
-                        && other.normal.dot(&gap.normal) > PARALLEL.cosine
+                    let is_parallel = || other.normal.dot(&gap.normal) > PARALLEL.cosine;
+                    let is_mean = || joint.is_some() && self.joints(*known, other, now) == joint;
+                    (other.point(0) - gap.point(0)).norm() < near && (is_parallel() || is_mean())
                 };
                 joins && other.as_ref().is_some_and(same)
             });
             if !is_held {
                 changed |= gap.distance < 0.0;
-                pairing.pairs.push(self.pair(edges, gap.xi));
+                pairing.pairs.push(Pair { joint, ..self.pair(edges, gap.xi) });
                 all.push((edges, Some(gap)));
             }
         }
@@ -423,32 +446,27 @@ impl Kinematics for EdgeToEdge {
             rows.push_open();
             return Ok(());
         }
-        self.push(edges, gap.distance + pair.depth, gap.gradient(), rows);
-        Ok(())
+        self.push_means((pair, 1), y, rows, |edges, gap, rows| {
+            self.push(edges, gap.distance + pair.depth, gap.gradient(), rows);
+        })
     }
 
     fn curvature_into(&self, pair: &Pair, y: &[f64], curvature: &mut [f64]) {
-        match self.gap_of(pair, y) {
-            Some(gap) => gap.curvature_into(curvature),
-            None => curvature.fill(0.0),
-        }
+        self.mean_into(pair, y, curvature, EdgeGap::curvature_into);
     }
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
-        let gap = self.gap_of(pair, y).ok_or_else(|| self.lost(pair))?;
-        for along in tangents(gap.normal, pair.tangential.tangents) {
-            self.push(self.of(pair), 0.0, gap.slip(along), rows);
-        }
-        Ok(())
+        self.push_means((pair, 2), y, rows, |edges, gap, rows| {
+            for along in tangents(gap.normal, pair.tangential.tangents) {
+                self.push(edges, 0.0, gap.slip(along), rows);
+            }
+        })
     }
 
     fn slip_derivative_into(&self, pair: &Pair, y: &[f64], _: &[f64], tangent: usize, matrix: &mut [f64]) {
-        match self.gap_of(pair, y) {
-            Some(gap) => {
-                let along = tangents(gap.normal, pair.tangential.tangents)[tangent];
-                gap.slip_derivative_into(along, matrix);
-            }
-            None => matrix.fill(0.0),
-        }
+        self.mean_into(pair, y, matrix, |gap, matrix| {
+            let along = tangents(gap.normal, pair.tangential.tangents)[tangent];
+            gap.slip_derivative_into(along, matrix);
+        });
     }
 }

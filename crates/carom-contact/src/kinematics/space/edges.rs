@@ -4,7 +4,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use carom_algebra::Vector;
-use carom_solid::{Bounds, Hull};
+use carom_solid::{Bounds, Hull, line_shape};
 
 use super::boundary::{Boundary, EdgeOfFacet};
 use super::patch::{cross, place};
@@ -119,6 +119,26 @@ impl Edges {
         let (next, is_end) = self.next[edge][usize::from(xi > 0.0)]?;
         let excess = xi.abs() - 1.0;
         Some(OnEdge { edge: next, xi: if is_end { 1.0 - excess } else { excess - 1.0 } })
+    }
+
+    /// The node of the joint with the edge that continues an edge at the end next to ξ, if one
+    /// does, and a direction along both edges there, not normalised.
+    pub(super) fn joint(&self, edge: usize, xi: f64, y: &[f64]) -> Option<(usize, Vector<3>)> {
+        let is_end = xi > 0.0;
+        let (next, next_is_end) = self.next[edge][usize::from(is_end)]?;
+        let leaving = |edge: usize, is_end: bool| {
+            let nodes = &self.nodes[edge];
+            let end = if is_end { 1.0 } else { -1.0 };
+            let from = place(y, nodes[usize::from(is_end)]);
+            let slopes = line_shape(nodes.len(), end).first;
+            let tangent: Vector<3> = nodes
+                .iter()
+                .zip(slopes)
+                .fold(Vector::ZERO, |sum, (&node, slope)| sum + (place(y, node) - from) * slope);
+            tangent * (end / tangent.norm())
+        };
+        let node = self.nodes[edge][usize::from(is_end)];
+        Some((node, leaving(edge, is_end) - leaving(next, next_is_end)))
     }
 
     /// Whether two edges are equal or one continues the other.

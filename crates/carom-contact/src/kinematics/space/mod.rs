@@ -11,6 +11,7 @@ mod crosses;
 mod crossing;
 mod edge_crossing;
 mod edge_gap;
+mod edge_joint;
 mod edge_points;
 mod edge_to_edge;
 mod edges;

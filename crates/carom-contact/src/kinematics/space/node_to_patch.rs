@@ -255,8 +255,8 @@ impl NodeToPatch {
                 continue;
             }
             let found = self.primary.patch(facet).nearest(y, from);
-            // Of two that are as near, as beside a corner over an edge, that across an own edge:
-            // the pairs of a node on both sides of the edge slide on side by side.
+            // Two may be as near as each other, as beside a corner over an edge. The one across an
+            // own edge is taken: the pairs of a node on both sides of the edge go on side by side.
             let least = best.map_or((1.0 - ROUND_OFF) * own.distance, |(known, least, _)| {
                 let leads = f64::from(i8::from(is_across(facet)) - i8::from(is_across(known)));
                 (1.0 + leads * ROUND_OFF) * least

@@ -41,8 +41,7 @@ const FALLBACK: Remedy = (
 const FINER: Remedy = (None, "a finer mesh there");
 const INERTIA: Remedy = (
     Some(Kind::Inertia),
-    "a scheme with inertia, here one that damps motion: beyond a limit load, and from a start far from equilibrium, \
-     load steps find no equilibrium; t is then a time, which must be long enough for the motion to settle",
+    "a scheme with inertia, here one that damps motion: beyond a limit load load steps find no equilibrium; t is then a time, which must be long enough for the motion to settle",
 );
 const OTHER_LAW: Remedy = (
     None,
