@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 /// Columns and entries of a row, an entry each, in any order.
 pub type SparseRow = Vec<(usize, f64)>;
 
-/// Rows that are linearly independent of each other.
+/// Rows that are linearly independent of each other. Columns are numbered in the order in which
+/// they occur, so that a table over them is short.
 ///
 /// ```
 /// use carom_algebra::Independent;
@@ -16,10 +17,19 @@ pub type SparseRow = Vec<(usize, f64)>;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Independent {
-    /// The rows, each without the parts along earlier ones and divided by its largest entry.
-    accepted: Vec<SparseRow>,
-    /// The accepted row whose largest entry is in this column.
-    pivots: BTreeMap<usize, usize>,
+    /// The numbers of the columns.
+    numbers: BTreeMap<usize, usize>,
+    accepted: Vec<Accepted>,
+    /// Where each column is in the row at hand.
+    places: Vec<Option<usize>>,
+}
+
+/// A row without its parts along earlier ones, divided by its largest entry.
+#[derive(Clone, Debug)]
+struct Accepted {
+    entries: SparseRow,
+    /// Column of its largest entry.
+    pivot: usize,
 }
 
 /// Which combinations of two rows are independent of earlier ones.
@@ -38,6 +48,7 @@ impl Independent {
     /// Adds a row unless it depends on those added before, which is where no entry of what they
     /// leave of it is larger than `least`. Returns whether it was added.
     pub fn accept(&mut self, row: SparseRow, least: f64) -> bool {
+        let row = self.numbered(row);
         let rest = self.rest(row, 0);
         self.add(rest, least)
     }
@@ -45,7 +56,10 @@ impl Independent {
     /// Adds those combinations of two rows that do not depend on the rows added before.
     pub fn accept_plane(&mut self, rows: [SparseRow; 2], least: f64) -> Plane {
         let before = self.accepted.len();
-        let rests = rows.map(|row| self.rest(row, 0));
+        let rests = rows.map(|row| {
+            let row = self.numbered(row);
+            self.rest(row, 0)
+        });
         // The longer one takes what is small in the other one with it.
         let [longer, other] = if square(&rests[0]) >= square(&rests[1]) { [0, 1] } else { [1, 0] };
         if !self.add(rests[longer].clone(), least) {
@@ -62,23 +76,37 @@ impl Independent {
         Plane::Line(line.map(|part| part / share.hypot(1.0)))
     }
 
+    /// A row with the numbers of its columns.
+    fn numbered(&mut self, mut row: SparseRow) -> SparseRow {
+        for (column, _) in &mut row {
+            let next = self.numbers.len();
+            *column = *self.numbers.entry(*column).or_insert(next);
+        }
+        self.places.resize(self.numbers.len(), None);
+        row
+    }
+
     /// A row without its parts along the rows added before, from the one with the index `from` on.
-    fn rest(&self, mut row: SparseRow, mut from: usize) -> SparseRow {
+    fn rest(&mut self, mut row: SparseRow, from: usize) -> SparseRow {
+        let places = &mut self.places;
+        row.iter().enumerate().for_each(|(place, &(column, _))| places[column] = Some(place));
         // An added row contains pivots of later ones only: in ascending order each occurs once.
-        while let Some((r, factor)) = row
-            .iter()
-            .filter_map(|(column, value)| Some((*self.pivots.get(column)?, *value)))
-            .filter(|(r, value)| *r >= from && *value != 0.0)
-            .min_by_key(|(r, _)| *r)
-        {
-            for &(column, value) in &self.accepted[r] {
-                match row.iter_mut().find(|(other, _)| *other == column) {
-                    Some((_, x)) => *x -= factor * value,
-                    None => row.push((column, -factor * value)),
+        for accepted in &self.accepted[from..] {
+            let Some(pivot) = places[accepted.pivot] else { continue };
+            let factor = row[pivot].1;
+            if factor == 0.0 {
+                continue;
+            }
+            for &(column, value) in &accepted.entries {
+                if let Some(place) = places[column] {
+                    row[place].1 -= factor * value;
+                } else {
+                    places[column] = Some(row.len());
+                    row.push((column, -factor * value));
                 }
             }
-            from = r + 1;
         }
+        row.iter().for_each(|&(column, _)| places[column] = None);
         row
     }
 
@@ -91,8 +119,7 @@ impl Independent {
             return false;
         }
         rest.iter_mut().for_each(|(_, x)| *x /= largest);
-        self.pivots.insert(pivot, self.accepted.len());
-        self.accepted.push(rest);
+        self.accepted.push(Accepted { entries: rest, pivot });
         true
     }
 }

@@ -58,6 +58,8 @@ pub struct Saddle {
     count: usize,
     /// Matrix S, then its factor L; column-major.
     stiffness: Vec<f64>,
+    /// S, in case it has no factor.
+    before: Vec<f64>,
     /// Transposed rows Gᵀ, then T = L⁻¹Gᵀ; a column per row of G.
     rows: Vec<f64>,
     /// Transposed directions Fᵀ, then U = L⁻¹Fᵀ; empty where F = G.
@@ -88,8 +90,8 @@ impl Saddle {
     pub fn begin(&mut self, stiffness: &[f64], size: usize, count: usize) {
         self.size = size;
         self.count = count;
-        self.stiffness.clear();
-        self.stiffness.extend_from_slice(stiffness);
+        self.stiffness.resize(size * size, 0.0);
+        copy_lower(stiffness, size, &mut self.stiffness);
         self.rows.clear();
         self.rows.resize(size * count, 0.0);
         self.directions.clear();
@@ -162,13 +164,14 @@ impl Saddle {
     pub fn factor(&mut self) -> bool {
         let n = self.size;
         let m = self.count;
-        let stiffness = self.stiffness.clone();
+        self.before.resize(n * n, 0.0);
+        copy_lower(&self.stiffness, n, &mut self.before);
         self.indefinite = None;
         self.skew = None;
         self.dependent.clear();
         let size = diagonal_size(self.stiffness.iter().step_by(n + 1).copied());
         if self.room.cholesky(MatMut::from_column_major_slice_mut(&mut self.stiffness, n, n), size).is_err() {
-            self.stiffness = stiffness;
+            std::mem::swap(&mut self.stiffness, &mut self.before);
             self.indefinite = Some(self.whole());
             return false;
         }
@@ -355,6 +358,14 @@ impl Saddle {
         matmul(x.rb_mut(), Accum::Add, directions, multipliers.rb(), -1.0, Par::Seq);
         solve_upper_triangular_in_place(lower.transpose(), x.rb_mut(), Par::Seq);
         c.iter_mut().zip(&self.scales).for_each(|(c, scale)| *c *= scale);
+    }
+}
+
+/// Copies the lower triangle of a matrix, column-major; the upper one is not used.
+fn copy_lower(from: &[f64], size: usize, to: &mut [f64]) {
+    for column in 0..size {
+        let entries = column * (size + 1)..(column + 1) * size;
+        to[entries.clone()].copy_from_slice(&from[entries]);
     }
 }
 

@@ -277,6 +277,7 @@ impl Constraints {
 
     /// Subtracts the forces that a correction of positions and multipliers causes.
     pub(crate) fn subtract_forces(&self, [increment, multipliers]: [&[f64]; 2], forces: &mut [f64]) {
+        let mut moved = Vec::new();
         for (r, (constraint, row)) in self.list.iter().zip(self.rows.iter()).enumerate() {
             let multiplier = match constraint.compliance {
                 0.0 => multipliers[r],
@@ -286,7 +287,8 @@ impl Constraints {
             if constraint.curvature.is_empty() {
                 continue;
             }
-            let moved: Vec<f64> = row.entries().map(|(dof, _)| increment[dof]).collect();
+            moved.clear();
+            moved.extend(row.entries().map(|(dof, _)| increment[dof]));
             let curvature = constraint.curvature.chunks_exact(row.gradient.len());
             for ((dof, _), curved) in row.entries().zip(curvature) {
                 let bent: f64 = curved.iter().zip(&moved).map(|(c, moved)| c * moved).sum();
@@ -357,10 +359,11 @@ fn part_of(matrix: &[f64], size: usize, d: usize, places: &[usize]) -> Vec<f64> 
     if matrix.is_empty() {
         return Vec::new();
     }
-    let mut part = Vec::with_capacity((places.len() * d).pow(2));
-    for row in places.iter().flat_map(|place| place * d..(place + 1) * d) {
+    let components: Vec<usize> = places.iter().flat_map(|place| place * d..(place + 1) * d).collect();
+    let mut part = Vec::with_capacity(components.len().pow(2));
+    for row in &components {
         let entries = &matrix[row * size..(row + 1) * size];
-        places.iter().for_each(|place| part.extend_from_slice(&entries[place * d..(place + 1) * d]));
+        part.extend(components.iter().map(|&column| entries[column]));
     }
     part
 }

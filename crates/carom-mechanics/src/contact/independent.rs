@@ -139,7 +139,9 @@ pub(crate) fn accept_stick(
 pub(crate) fn on_free_dofs(model: &Model, row: Row) -> SparseRow {
     let is_free = |(dof, slope): &(usize, f64)| *slope != 0.0 && !model.fixed[*dof];
     if model.points.is_empty() {
-        return row.entries().filter(is_free).collect();
+        let mut free = SparseRow::with_capacity(row.gradient.len());
+        free.extend(row.entries().filter(is_free));
+        return free;
     }
     let mut sums = SparseRow::new();
     for (dof, slope) in model.points.pulled(row.entries()).filter(is_free) {

@@ -160,6 +160,7 @@ impl Direct {
             unknown.and_then(|unknown| elimination.schur_place(unknown))
         };
         let points = &model.points;
+        let mut places = Vec::new();
         let mut count = 0;
         for ((row, gradient), direction) in rows.list.iter().zip(rows.rows.iter()).zip(rows.directions.iter())
         {
@@ -181,7 +182,8 @@ impl Direct {
             let carried = |(i, (dof, _)): (usize, (usize, f64))| {
                 points.carriers(dof).filter_map(move |(dof, weight)| Some((i, place(dof)?, weight)))
             };
-            let places: Vec<(usize, usize, f64)> = gradient.entries().enumerate().flat_map(carried).collect();
+            places.clear();
+            places.extend(gradient.entries().enumerate().flat_map(carried));
             for &(i, a, of_a) in &places {
                 for &(j, b, of_b) in places.iter().filter(|(_, b, _)| a >= *b) {
                     let value = row.stiffness(gradient.gradient, [i, j], row.compliance, curved);

@@ -24,6 +24,18 @@ pub(super) struct Faced {
     pub(super) carriers: Option<[usize; MOST]>,
 }
 
+impl Faced {
+    /// The points that face a facet of the primary; `own`: number of nodes of the secondary facet.
+    pub(super) fn patch_of(&mut self, facet: usize, own: usize) -> &mut Patch {
+        let known = self.patches.iter().position(|patch| patch.facet == facet);
+        let place = known.unwrap_or(self.patches.len());
+        if known.is_none() {
+            self.patches.push(Patch::new(facet, own));
+        }
+        &mut self.patches[place]
+    }
+}
+
 /// The facets at one configuration, measured when they are first asked for: few are near the other
 /// side.
 #[derive(Debug, Default)]

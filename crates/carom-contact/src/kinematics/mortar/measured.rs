@@ -15,7 +15,7 @@ use super::cut::{Crossing, Facing, Meeting, Opposed, Regions};
 use super::joint::Joint;
 use super::multipliers::{MOST, Multiplier, Part, bernstein};
 use super::opposite::{Opposite, PointGap};
-use super::patch::{Measured, Patch};
+use super::patch::Measured;
 use super::sides::Mortar;
 use super::turned::{Own, Turned, faces};
 use crate::constants::MORTAR_COVERED;
@@ -65,15 +65,15 @@ impl Mortar {
             }
             let own = self.secondary.facet(part.facet);
             let Facing { points, ends, borders, joints } = facing(part.facet, own);
-            let measured = points.into_iter().filter_map(|at| self.measured(own, at, y));
-            let borders = borders.iter().filter_map(|at| self.border(own, at, y));
-            for point in measured.filter(|point| point.area > 0.0).chain(borders) {
-                let known = of.patches.iter().position(|patch| patch.facet == point.at.facet);
-                let at = known.unwrap_or_else(|| {
-                    of.patches.push(Patch::new(point.at.facet, own.nodes.len()));
-                    of.patches.len() - 1
-                });
-                of.patches[at].points.push(point);
+            for at in points {
+                if let Some(point) = self.measured(own, at, y).filter(|point| point.area > 0.0) {
+                    of.patch_of(at.facet, own.nodes.len()).points.push(point);
+                }
+            }
+            for at in &borders {
+                if let Some(point) = self.border(own, at, y) {
+                    of.patch_of(at.facet, own.nodes.len()).points.push(point);
+                }
             }
             of.joints = joints.iter().filter_map(|at| self.joint(own, at, y)).collect();
             of.ends = ends;

@@ -26,8 +26,9 @@ use std::sync::Mutex;
 use carom_algebra::Vector;
 
 pub use self::cut::Quadrature;
+use self::multipliers::Part;
 use self::opposite::Opposite;
-use self::patch::Kind;
+use self::patch::{Kind, Patch};
 pub use self::sides::Mortar;
 use super::obstacle::Tip;
 use super::passed::Passed;
@@ -42,10 +43,12 @@ impl Mortar {
     fn cover_at_start(&self, multiplier: usize) -> f64 {
         let Some(all) = self.opposite.whole(multiplier) else { return 0.0 };
         let mut covered = 0.0;
-        let measured = self.each_patch(&all, self.reference(), |part, patch| {
+        let add = |part: &Part, patch: &mut Patch| {
             let shares = patch.shares(part.polynomial).filter(|(point, _)| !point.is_border());
             covered += shares.map(|(_, share)| share).sum::<f64>();
-        });
+        };
+        let parts = &self.multipliers[multiplier].parts;
+        let measured = self.at(self.reference(), parts, |of_facets| self.each_patch(&all, of_facets, add));
         measured.map_or(0.0, |()| covered / self.multipliers[multiplier].area)
     }
 
@@ -80,28 +83,6 @@ impl Mortar {
         }
         // A diverging iterate is rejected elsewhere.
         !size.is_finite() || sum.norm() <= ROUND_OFF * size && moment.abs() <= ROUND_OFF * size * arm
-    }
-
-    /// The weighted gap of a pair; its recorded contact point becomes that on the middle facet of
-    /// its window that weighs most.
-    ///
-    /// # Errors
-    /// If a point has no unique closest point on the primary.
-    fn gap(&self, pair: &mut Pair, y: Places) -> Result<f64, ContactError> {
-        let mut gap = 0.0;
-        let mut heaviest: Option<(f64, f64)> = None;
-        self.each_patch(&pair.clone(), y, |part, patch| {
-            gap += patch.gap(part.polynomial);
-            if patch.facet == pair.facet {
-                for (point, share) in patch.shares(part.polynomial).filter(|(point, _)| !point.is_border()) {
-                    if heaviest.is_none_or(|(most, _)| share >= most) {
-                        heaviest = Some((share, point.at.eta));
-                    }
-                }
-            }
-        })?;
-        pair.xi = heaviest.map_or(pair.xi, |(_, eta)| eta.clamp(-1.0, 1.0));
-        Ok(gap / self.multipliers[pair.node].area)
     }
 }
 
@@ -196,11 +177,25 @@ impl Kinematics for Mortar {
         vec![None; multipliers.len()]
     }
 
+    /// The recorded contact point becomes that on the middle facet of the window that weighs most.
     fn measure(&self, pair: &mut Pair, y: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let y = Places::new(y, 2);
-        let gap = self.gap(pair, y)?;
         let stencil = self.stencil(pair);
-        let Some(slopes) = self.row((pair, Kind::Gap), &stencil, y)? else {
+        let mut gap = 0.0;
+        let mut heaviest: Option<(f64, f64)> = None;
+        let slopes = self.row((pair, Kind::Gap), &stencil, y, |part, patch| {
+            gap += patch.gap(part.polynomial);
+            if patch.facet != pair.facet {
+                return;
+            }
+            for (point, share) in patch.shares(part.polynomial).filter(|(point, _)| !point.is_border()) {
+                if heaviest.is_none_or(|(most, _)| share >= most) {
+                    heaviest = Some((share, point.at.eta));
+                }
+            }
+        })?;
+        pair.xi = heaviest.map_or(pair.xi, |(_, eta)| eta.clamp(-1.0, 1.0));
+        let Some(slopes) = slopes else {
             // Nothing is left for a pressure to act on.
             pair.active = false;
             pair.lambda = 0.0;
@@ -208,6 +203,7 @@ impl Kinematics for Mortar {
             return Ok(());
         };
         debug_assert!(self.is_balanced(&stencil.nodes, &slopes, y), "mortar row {}", pair.node);
+        gap /= self.multipliers[pair.node].area;
         rows.push_of_many(gap, &stencil.nodes, stencil.own, &slopes);
         Ok(())
     }
@@ -238,7 +234,7 @@ impl Kinematics for Mortar {
 
     fn slip(&self, pair: &Pair, y: &[f64], _: &[f64], rows: &mut Rows) -> Result<(), ContactError> {
         let stencil = self.stencil(pair);
-        let row = self.row((pair, Kind::Slip), &stencil, Places::new(y, 2))?;
+        let row = self.row((pair, Kind::Slip), &stencil, Places::new(y, 2), |_, _| {})?;
         let slopes = row.unwrap_or_else(|| vec![Vector::ZERO; stencil.nodes.len()]);
         rows.push_of_many(0.0, &stencil.nodes, stencil.own, &slopes);
         Ok(())

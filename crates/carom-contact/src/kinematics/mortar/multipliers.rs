@@ -56,7 +56,8 @@ pub(super) fn bernstein(degree: usize, number: usize, xi: f64) -> f64 {
     let back = 0.5 * (1.0 - xi);
     let forth = 0.5 * (1.0 + xi);
     let binomial = if degree == 2 && number == 1 { 2.0 } else { 1.0 };
-    binomial * back.powi((degree - number) as i32) * forth.powi(number as i32)
+    let powers = |x: f64| [1.0, x, x * x];
+    binomial * powers(back)[degree - number] * powers(forth)[number]
 }
 
 /// The multipliers of a secondary side; `reference`: reference positions, flat over all nodes.

@@ -11,6 +11,7 @@
 
 use carom_algebra::Vector;
 
+use super::cache::Faced;
 use super::cut::{Quadrature, Rule};
 use super::joint::Joint;
 use super::multipliers::{Part, bernstein};
@@ -41,9 +42,12 @@ impl Stencil {
 impl Mortar {
     /// The nodes of a pair's weighted gap.
     pub(super) fn stencil(&self, pair: &Pair) -> Stencil {
-        let mut nodes = self.multipliers[pair.node].nodes.clone();
-        let own = nodes.len();
-        for &facet in self.opposite.window(pair) {
+        let window = self.opposite.window(pair);
+        let own_nodes = &self.multipliers[pair.node].nodes;
+        let own = own_nodes.len();
+        let mut nodes = Vec::with_capacity(own + window.len() * NODES);
+        nodes.extend_from_slice(own_nodes);
+        for &facet in window {
             for &node in self.opposite.nodes(facet) {
                 if !nodes.contains(&node) {
                     nodes.push(node);
@@ -54,37 +58,35 @@ impl Mortar {
     }
 
     /// Calls a function with the parts of a pair's multiplier that face its window, each with its
-    /// secondary facet.
+    /// secondary facet; `of_facets`: the secondary facets, of which its own have been measured.
     ///
     /// # Errors
     /// If a point has no unique closest point on the primary.
     pub(super) fn each_patch(
         &self,
         pair: &Pair,
-        y: Places,
+        of_facets: &mut [Faced],
         mut of: impl FnMut(&Part, &mut Patch),
     ) -> Result<(), ContactError> {
         let multiplier = &self.multipliers[pair.node];
-        self.at(y, &multiplier.parts, |of_facets| {
-            for part in &multiplier.parts {
-                let faced = &mut of_facets[part.facet];
-                let carriers = faced.carriers.unwrap_or_default();
-                if !carriers[..=self.degree].contains(&part.polynomial) {
-                    continue;
-                }
-                for patch in &mut faced.patches {
-                    if self.opposite.is_in_window(pair, patch.facet) {
-                        patch.unless_regular(multiplier.node, pair)?;
-                        of(part, patch);
-                    }
+        for part in &multiplier.parts {
+            let faced = &mut of_facets[part.facet];
+            let carriers = faced.carriers.unwrap_or_default();
+            if !carriers[..=self.degree].contains(&part.polynomial) {
+                continue;
+            }
+            for patch in &mut faced.patches {
+                if self.opposite.is_in_window(pair, patch.facet) {
+                    patch.unless_regular(multiplier.node, pair)?;
+                    of(part, patch);
                 }
             }
-            Ok(())
-        })
+        }
+        Ok(())
     }
 
     /// The row of a pair's gap or slip, over its stencil; none if nothing of its part of the side
-    /// faces the window.
+    /// faces the window. Calls a function with what it is the integral over.
     ///
     /// # Errors
     /// If a point has no unique closest point on the primary.
@@ -93,17 +95,21 @@ impl Mortar {
         (pair, kind): (&Pair, Kind),
         stencil: &Stencil,
         y: Places,
+        mut of: impl FnMut(&Part, &mut Patch),
     ) -> Result<Option<Vec<Vector<2>>>, ContactError> {
-        let share = self.multipliers[pair.node].area.recip();
+        let multiplier = &self.multipliers[pair.node];
+        let share = multiplier.area.recip();
         let mut slopes = vec![Vector::ZERO; stencil.nodes.len()];
         let mut faces = false;
-        self.each_patch(pair, y, |part, patch| {
+        let add = |part: &Part, patch: &mut Patch| {
             faces = true;
+            of(part, patch);
             let own = self.secondary.facet(part.facet).nodes;
             let (places, count) = stencil.places(own, self.opposite.nodes(patch.facet));
             let row = patch.row(kind, part.polynomial);
             places[..count].iter().zip(row).for_each(|(&at, slope)| slopes[at] += *slope * share);
-        })?;
+        };
+        self.at(y, &multiplier.parts, |of_facets| self.each_patch(pair, of_facets, add))?;
         Ok(faces.then_some(slopes))
     }
 
@@ -112,29 +118,32 @@ impl Mortar {
     pub(super) fn derivative_into(&self, (pair, kind): (&Pair, Kind), y: Places, matrix: &mut [f64]) {
         let stencil = self.stencil(pair);
         let size = 2 * stencil.nodes.len();
-        let share = self.multipliers[pair.node].area.recip();
+        let multiplier = &self.multipliers[pair.node];
+        let share = multiplier.area.recip();
         matrix.fill(0.0);
-        let added = self.each_patch(pair, y, |part, patch| {
-            let own = self.secondary.facet(part.facet).nodes;
-            let (places, count) = stencil.places(own, self.opposite.nodes(patch.facet));
-            let of_patch = patch.derivative(kind, part.polynomial);
-            for (row, entries) in of_patch.as_chunks::<SIZE>().0[..2 * count].iter().enumerate() {
-                let sums = &mut matrix[(2 * places[row / 2] + row % 2) * size..][..size];
-                let sums = sums.as_chunks_mut::<2>().0;
-                for (&place, entry) in places[..count].iter().zip(entries.as_chunks::<2>().0) {
-                    sums[place][0] += share * entry[0];
-                    sums[place][1] += share * entry[1];
+        self.at(y, &multiplier.parts, |of_facets| {
+            let added = self.each_patch(pair, of_facets, |part, patch| {
+                let own = self.secondary.facet(part.facet).nodes;
+                let (places, count) = stencil.places(own, self.opposite.nodes(patch.facet));
+                let of_patch = patch.derivative(kind, part.polynomial);
+                for (row, entries) in of_patch.as_chunks::<SIZE>().0[..2 * count].iter().enumerate() {
+                    let sums = &mut matrix[(2 * places[row / 2] + row % 2) * size..][..size];
+                    let sums = sums.as_chunks_mut::<2>().0;
+                    for (&place, entry) in places[..count].iter().zip(entries.as_chunks::<2>().0) {
+                        sums[place][0] += share * entry[0];
+                        sums[place][1] += share * entry[1];
+                    }
                 }
+            });
+            // Without a unique closest point the row has been refused.
+            if added.is_err() {
+                matrix.fill(0.0);
+                return;
             }
-        });
-        // Without a unique closest point the row has been refused.
-        if added.is_err() {
-            matrix.fill(0.0);
-            return;
-        }
-        self.add_joints(pair, y, &stencil, matrix, |joint| match kind {
-            Kind::Gap => joint.normal,
-            Kind::Slip => joint.tangent,
+            self.add_joints(pair, of_facets, &stencil, matrix, |joint| match kind {
+                Kind::Gap => joint.normal,
+                Kind::Slip => joint.tangent,
+            });
         });
     }
 
@@ -143,7 +152,7 @@ impl Mortar {
     fn add_joints(
         &self,
         pair: &Pair,
-        y: Places,
+        of_facets: &[Faced],
         stencil: &Stencil,
         matrix: &mut [f64],
         jump: impl Fn(&Joint) -> Vector<2>,
@@ -151,29 +160,27 @@ impl Mortar {
         let multiplier = &self.multipliers[pair.node];
         let size = 2 * stencil.nodes.len();
         let place = |node: usize| stencil.nodes.iter().position(|&other| other == node);
-        self.at(y, &multiplier.parts, |of_facets| {
-            for &Part { facet, polynomial, .. } in &multiplier.parts {
-                let own = self.secondary.facet(facet);
-                let carriers = of_facets[facet].carriers.unwrap_or_default();
-                for joint in &of_facets[facet].joints {
-                    if !joint.facets.iter().all(|&facet| self.opposite.is_in_window(pair, facet)) {
-                        continue;
-                    }
-                    let carried = (0..=self.degree).filter(|&number| carriers[number] == polynomial);
-                    let value = carried.map(|number| bernstein(self.degree, number, joint.xi)).sum::<f64>();
-                    let of_point = own.nodes.iter().copied().zip(own.shape.at(joint.xi).values);
-                    let mut places = [(0, 0.0); NODES + 1];
-                    let mut count = 0;
-                    for (node, weight) in of_point.chain([(joint.node, -1.0)]) {
-                        if let Some(place) = place(node) {
-                            places[count] = (place, weight);
-                            count += 1;
-                        }
-                    }
-                    joint.add_to(value / multiplier.area, jump(joint), &places[..count], size, matrix);
+        for &Part { facet, polynomial, .. } in &multiplier.parts {
+            let own = self.secondary.facet(facet);
+            let carriers = of_facets[facet].carriers.unwrap_or_default();
+            for joint in &of_facets[facet].joints {
+                if !joint.facets.iter().all(|&facet| self.opposite.is_in_window(pair, facet)) {
+                    continue;
                 }
+                let carried = (0..=self.degree).filter(|&number| carriers[number] == polynomial);
+                let value = carried.map(|number| bernstein(self.degree, number, joint.xi)).sum::<f64>();
+                let of_point = own.nodes.iter().copied().zip(own.shape.at(joint.xi).values);
+                let mut places = [(0, 0.0); NODES + 1];
+                let mut count = 0;
+                for (node, weight) in of_point.chain([(joint.node, -1.0)]) {
+                    if let Some(place) = place(node) {
+                        places[count] = (place, weight);
+                        count += 1;
+                    }
+                }
+                joint.add_to(value / multiplier.area, jump(joint), &places[..count], size, matrix);
             }
-        });
+        }
     }
 
     /// The smallest gap of a pair at the ends of facets, of either side, on its part of the
