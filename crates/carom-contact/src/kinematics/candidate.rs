@@ -173,7 +173,7 @@ impl NodeToFacet {
         let shape = self.primary.facet(facet);
         // The normal where the node meets the facet: in the middle of a dented one it differs.
         let normal = shape.at(y, xi.clamp(-1.0, 1.0)).normal;
-        let normals: Vec<_> = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal).collect();
+        let normals: Vec<_> = own.normals_at(node, around, y).collect();
         let corner = shape.at(y, if forward { 1.0 } else { -1.0 }).position;
         let meets = |&facet: &usize| {
             // Below a dent the corner lies past the ends of both facets.

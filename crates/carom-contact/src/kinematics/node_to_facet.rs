@@ -157,7 +157,7 @@ impl NodeToFacet {
     pub(super) fn may_press(&self, node: usize, facet: usize, y: Places) -> bool {
         let Some((own, around)) = &self.own else { return true };
         let Some(around) = around.get(&node) else { return true };
-        let normals = around.iter().map(|&facet| own.facet(facet).at(y, 0.0).normal);
+        let normals = own.normals_at(node, around, y);
         let here = self.primary.facet(facet).at(y, 0.0);
         let height = (y.at(node) - here.position).dot(&here.normal);
         let sized =

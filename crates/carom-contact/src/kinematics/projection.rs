@@ -79,6 +79,15 @@ impl Facet<'_> {
         self.curve(y.at(self.nodes[0]), y).tangent(xi)
     }
 
+    /// Coordinate ξ of one of its nodes: both ends come first.
+    pub(crate) fn coordinate(&self, place: usize) -> f64 {
+        match place {
+            0 => -1.0,
+            1 => 1.0,
+            _ => -1.0 + 2.0 * (place - 1) as f64 / (self.nodes.len() - 1) as f64,
+        }
+    }
+
     /// Position of the facet at ξ, with its derivatives.
     pub fn at(&self, y: Places, xi: f64) -> FacetPoint {
         self.seen_from(Vector::ZERO, y, xi)

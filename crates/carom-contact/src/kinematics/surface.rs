@@ -205,6 +205,23 @@ impl Surface {
         self.kink(facet, next, y).is_small()
     }
 
+    /// Normals of the `facets` that meet at a node, there and at the nodes beside it: a bent facet
+    /// faces elsewhere in its middle.
+    pub(super) fn normals_at<'a>(
+        &'a self,
+        node: usize,
+        facets: &'a [usize],
+        y: Places<'a>,
+    ) -> impl Iterator<Item = Vector<2>> + Clone + 'a {
+        facets.iter().flat_map(move |&facet| {
+            let facet = self.facet(facet);
+            let place = facet.nodes.iter().position(|&other| other == node).unwrap_or_default();
+            let xi = facet.coordinate(place);
+            let beside = 2.0 / (facet.nodes.len() - 1) as f64;
+            [xi, (xi - beside).max(-1.0), (xi + beside).min(1.0)].map(|xi| facet.at(y, xi).normal)
+        })
+    }
+
     /// The facets next to a facet at a convex corner.
     pub(crate) fn across_corners<'a>(
         &'a self,

@@ -433,10 +433,10 @@ impl Penetration {
                 limit = limit.max(model.contacts[k].depths.others * watched.length.max(entered.length));
             }
             if depth > limit
-                && let Some(k) = *contact
+                && contact.is_some()
                 && let Some(state) = state
             {
-                limit += kept(&model.contacts[k], &state.pairs[k], node);
+                limit += kept(model, state, *body, node);
             }
             if depth > limit && found.beyond.is_none_or(|worst| depth - limit > worst.depth - worst.limit) {
                 let what = if is_node { What::Node } else { What::Edge };
@@ -471,9 +471,15 @@ fn square(a: &[f64], b: &[f64], dimension: usize, node: usize) -> f64 {
     (dimension * node..dimension * (node + 1)).map(|dof| (a[dof] - b[dof]).powi(2)).sum()
 }
 
-/// The depth that the pairs of a node keep.
-fn kept(contact: &Contact, pairs: &[Pair], node: usize) -> f64 {
-    let own = pairs.iter().filter(|pair| contact.node(pair) == node);
+/// The depth that the pairs of a node with facets of a body keep, in whichever contact: a corner
+/// may belong to two.
+fn kept(model: &Model, state: &State, body: usize, node: usize) -> f64 {
+    let is_of = |contact: &Contact, pair: &Pair| {
+        let entered = contact.kinematics.facet_nodes(pair).first();
+        contact.node(pair) == node && entered.and_then(|&node| part_of(model, node)) == Some(body)
+    };
+    let pairs = model.contacts.iter().zip(&state.pairs);
+    let own = pairs.flat_map(|(contact, pairs)| pairs.iter().filter(move |pair| is_of(contact, pair)));
     own.map(|pair| pair.depth).fold(0.0, f64::max)
 }
 

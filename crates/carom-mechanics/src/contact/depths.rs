@@ -16,14 +16,19 @@ use crate::model::{Contact, Model};
 use crate::state::State;
 
 /// Notes how deep pairs that have just been found or handed over began: at the positions `before`,
-/// where the step or a stage of it started, if pairs keep depths.
+/// where the step or a stage of it started, if pairs keep depths. Of springs those do whose energy
+/// is conserved, and only where they are found: a handed-over one goes on as it is.
 pub(crate) fn begin(model: &Model, before: Option<&[f64]>, pairings: &mut [Pairing]) {
     let mut row = Rows::new(model.dimension);
     for (contact, pairing) in model.contacts.iter().zip(pairings) {
         let is_constraint = contact.interface.is_constraint();
+        let conserves = contact.interface.direction().accumulates();
         for pair in pairing.pairs.iter_mut().filter(|pair| pair.begins) {
             pair.begins = false;
-            let keeps = is_constraint && contact.kinematics.keeps_depth(pair);
+            if conserves && pair.active {
+                continue;
+            }
+            let keeps = (is_constraint || conserves) && contact.kinematics.keeps_depth(pair);
             let Some(before) = before.filter(|_| keeps) else {
                 pair.depth = 0.0;
                 continue;

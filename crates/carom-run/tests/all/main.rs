@@ -35,6 +35,7 @@ mod manufactured;
 mod materials;
 mod meeting;
 mod memory;
+mod met_corners;
 mod momentum;
 mod mortar;
 mod mortar_friction;

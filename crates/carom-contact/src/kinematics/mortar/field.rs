@@ -46,7 +46,7 @@ impl Mortar {
                 continue;
             };
             for (place, &node) in own.nodes.iter().enumerate() {
-                let xi = coordinate(own.nodes.len(), place).clamp(from, to);
+                let xi = own.coordinate(place).clamp(from, to);
                 let of = |number: usize| {
                     let carrier = carriers[number];
                     coefficients.get(&(facet, carrier)).copied().unwrap_or(0.0)
@@ -59,15 +59,6 @@ impl Mortar {
             }
         }
         at_nodes.into_values().map(|of_facets| united(&of_facets)).collect()
-    }
-}
-
-/// Coordinate ξ of a node of a curve: both ends come first.
-fn coordinate(nodes: usize, place: usize) -> f64 {
-    match place {
-        0 => -1.0,
-        1 => 1.0,
-        _ => -1.0 + 2.0 * (place - 1) as f64 / (nodes - 1) as f64,
     }
 }
 
